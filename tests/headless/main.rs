@@ -35,6 +35,7 @@ mod points;
 mod pressure;
 mod reactions;
 mod reading;
+mod regions;
 mod resolution;
 mod rest;
 mod saving;

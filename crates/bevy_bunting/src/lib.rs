@@ -37,6 +37,7 @@
 //! | [`ClothMesh`] | a cloth | shape at rest; requires the components that a cloth needs |
 //! | [`ClothResolution`] | a cloth | how finely a mesh that is no grid is simulated, whatever its triangles |
 //! | [`ClothMaterial`] | a cloth | area density, stiffnesses, damping, friction |
+//! | [`ClothRegions`] | a cloth | where its material differs: hems, battens, patches |
 //! | [`LodSet`] | a cloth | levels of detail |
 //! | [`Attachment`] | a cloth | holds vertices on another entity |
 //! | [`ClothPaused`] | a cloth | stops the simulation of the cloth |
@@ -156,6 +157,7 @@ pub use cloth::imperfection::ClothSeed;
 pub use cloth::material::ClothMaterial;
 pub use cloth::mesh::ClothMesh;
 pub use cloth::preroll::{ClothPreroll, PrerollPlugin};
+pub use cloth::regions::ClothRegions;
 pub use cloth::resolution::ClothResolution;
 pub use cloth::state::ClothState;
 pub use cloth::weights::WeightsError;
@@ -225,6 +227,10 @@ pub use render::debug::{ClothDebugPlugin, ClothGizmos};
 #[cfg(feature = "render")]
 pub use render::deformer::ClothDeformer;
 #[cfg(feature = "render")]
+pub use render::image_region::image_region;
+#[cfg(feature = "render")]
+pub use render::painted_regions::PaintedRegion;
+#[cfg(feature = "render")]
 pub use render::painted_vertices::PaintedVertices;
 #[cfg(feature = "render")]
 pub use render::painted_weights::{ColorChannel, PaintedDistance, PaintedWeights, VertexPaint};
@@ -260,9 +266,9 @@ pub mod prelude {
         ClothCollision, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
         ClothFeatures, ClothGrab, ClothHit, ClothImpulse, ClothInertia, ClothLayers,
         ClothLevelChanged, ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins,
-        ClothPreroll, ClothPressure, ClothReactions, ClothResolution, ClothSaves, ClothSeed,
-        ClothSettings, ClothSkin, ClothSnapshot, ClothSpatialQuery, ClothState, ClothSurface,
-        ClothSystems, ClothTargetLost, ClothTick, ClothTouched, ClothWorldSnapshot,
+        ClothPreroll, ClothPressure, ClothReactions, ClothRegions, ClothResolution, ClothSaves,
+        ClothSeed, ClothSettings, ClothSkin, ClothSnapshot, ClothSpatialQuery, ClothState,
+        ClothSurface, ClothSystems, ClothTargetLost, ClothTick, ClothTouched, ClothWorldSnapshot,
         GrabbedVertices, LodSet, LodViewer, SelfCollision, ShiftOrigin, SkinError, SkinLimits,
         SnapshotError, TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan,
         WindField, WindInfluence, WindPerParticle, WindRegion, WindShape, WindWake,
@@ -270,13 +276,13 @@ pub mod prelude {
     #[cfg(feature = "render")]
     pub use crate::{
         ClothDeformer, ClothFromMesh, ClothSubdivision, ColorChannel, PaintedDistance,
-        PaintedVertices, PaintedWeights, VertexPaint,
+        PaintedRegion, PaintedVertices, PaintedWeights, VertexPaint, image_region,
     };
     #[cfg(feature = "picking")]
     pub use crate::{ClothDragPlugin, ClothDragSettings, PinBrush, PinStroke};
     #[cfg(feature = "weave")]
     pub use crate::{Weave, WeavePlugin, WovenMaterial};
-    pub use bunting_solver::{FabricMaterial, MeshPoint, StepLimits, StepSettings};
+    pub use bunting_solver::{FabricMaterial, MaterialRegion, MeshPoint, StepLimits, StepSettings};
 }
 
 /// All plugins that cloth needs, one for each concern.

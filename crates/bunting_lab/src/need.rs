@@ -60,7 +60,7 @@ impl Need {
         tick: f32,
     ) {
         self.frame = drive.motion;
-        self.loads.air = Loads::of_air(drive, material, tick);
+        self.loads.air = Loads::of_air(batch.fabric(), drive, material, tick);
         self.loads.motion = Loads::of_motion(batch.fabric(), before, after, tick);
         self.loads.tension = batch.tension_load(0);
         self.loads.contacts = batch.contact_load(0);

@@ -91,7 +91,8 @@ pub use contact::points::{ContactPoint, Touched};
 pub use contact::reaction::ContactReaction;
 pub use fabric::{
     Carried, CoarserMesh, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Link,
-    LinkFamily, MeshPoint, MeshRepair, Resampled, Resolution,
+    LinkFamily, MaterialRegion, MeshPoint, MeshRepair, RegionError, RegionShape, Resampled,
+    Resolution,
 };
 pub use pressure::Pressure;
 pub use simd::level::{has_fused_products, instruction_set, with_every_instruction_set};

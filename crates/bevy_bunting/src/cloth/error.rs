@@ -2,7 +2,7 @@
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bunting_solver::FabricError;
+use bunting_solver::{FabricError, RegionError};
 
 use crate::cloth::weights::WeightsError;
 use crate::skeleton::skin::SkinError;
@@ -30,6 +30,17 @@ pub enum ClothError {
         entity: Entity,
         /// Defect of the weights.
         source: WeightsError,
+    },
+    /// A region of the [`ClothRegions`](crate::ClothRegions) cannot be used. The cloth keeps its last valid fabrics; a cloth that never
+    /// had any is not simulated until its `ClothRegions` or its `ClothMesh` change.
+    #[error("region {region} of the ClothRegions of cloth {entity} cannot be used: {source}")]
+    Region {
+        /// The cloth.
+        entity: Entity,
+        /// Index of the region.
+        region: usize,
+        /// Defect of the region.
+        source: RegionError,
     },
     /// The material cannot be simulated. The cloth keeps its last valid material; a cloth that never had one
     /// is not simulated until its material changes.

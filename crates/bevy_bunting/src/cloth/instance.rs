@@ -77,6 +77,8 @@ pub(crate) struct ClothInstance {
     pub lods: LodSet,
     /// The resolution that the levels were last asked for in.
     pub resolution: ClothResolution,
+    /// Whether the levels were last asked for with [`ClothRegions`](crate::ClothRegions).
+    pub has_regions: bool,
     /// Why the present `LodSet` is not used; none if it is.
     pub bad_lods: Option<ClothError>,
     pub level: usize,

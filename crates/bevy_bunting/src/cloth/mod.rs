@@ -11,6 +11,7 @@ mod missing_plugins;
 pub mod place;
 pub mod preroll;
 pub mod reflect;
+pub mod regions;
 pub mod resolution;
 pub mod restored;
 pub mod state;

@@ -188,7 +188,7 @@ fn begin_prerolls(
         let growth = instance.growth;
         let drive = growth.drive(surroundings.drive(wind, frame, FrameMotion::NONE, &exposure));
         let material = instance.acting_material();
-        let air = Loads::of_air(&drive, &material, tick);
+        let air = Loads::of_air(&fabric, &drive, &material, tick);
         let (class, _) = Loads {
             air: growth.end() * air,
             frame: exposure.acceleration().length(),

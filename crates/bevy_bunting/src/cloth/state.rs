@@ -200,7 +200,8 @@ impl ClothState {
     }
 
     /// The tension of each of the [`links`](Fabric::links) of the fabric, in their order, N for each metre across it: of warp
-    /// and weft the stiffness of a material, that of the cloth's [`ClothMaterial`](crate::ClothMaterial), times the strain. Zero
+    /// and weft the stiffness of a material, that of the cloth's [`ClothMaterial`](crate::ClothMaterial), times the strain and the factor
+    /// of the cloth's [`ClothRegions`](crate::ClothRegions) there. Zero
     /// where the cloth is slack, of diagonals, and where the material cannot be stretched. As exact as the strain is: it holds
     /// for cloth that hangs or is blown, and is too great where the effort is too low for what acts on the cloth.
     pub fn tensions(&self, material: &FabricMaterial) -> impl Iterator<Item = f32> {
@@ -212,8 +213,9 @@ impl ClothState {
         };
         let stiffnesses: [f32; 3] =
             [LinkFamily::Warp, LinkFamily::Weft, LinkFamily::Diagonal].map(stiffness);
+        let factor = |link| self.fabric().map_or(1.0, |fabric| fabric.stretch_factor(link));
         links.iter().zip(self.strains()).map(move |(link, strain)| {
-            let stiffness = stiffnesses[link.family as usize];
+            let stiffness = stiffnesses[link.family as usize] * factor(link);
             if stiffness.is_finite() { stiffness * strain.max(0.0) } else { 0.0 }
         })
     }

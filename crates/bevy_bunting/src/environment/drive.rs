@@ -69,7 +69,9 @@ pub(crate) fn drive_cloths(
             inertia.reduce(&mut drive, &effort.motion(), tick);
         }
         let drive = growth.drive(drive);
-        let air = Loads::of_air(&drive, &instance.acting_material(), tick);
+        let material = instance.acting_material();
+        let fabric = instance.fabric();
+        let air = fabric.map_or(0.0, |it| Loads::of_air(it, &drive, &material, tick));
         let air = air * growth.end();
         effort.note_drive(motion, air, exposure.acceleration().length(), inertia);
         let mut lane = batches.lane(lane);

@@ -9,6 +9,7 @@ use bevy_transform::helper::TransformHelper;
 
 use crate::cloth::error::ClothError;
 use crate::cloth::mesh::ClothMesh;
+use crate::cloth::regions::ClothRegions;
 use crate::cloth::resolution::ClothResolution;
 use crate::fabric::attached::Attached;
 use crate::fabric::levels::ClothLevels;
@@ -23,6 +24,7 @@ type Cut = (
     Option<&'static Attachment>,
     &'static LodSet,
     Option<&'static ClothResolution>,
+    Option<&'static ClothRegions>,
     Has<ScaleBaked>,
     Has<ClothSkin>,
 );
@@ -40,7 +42,8 @@ pub(crate) fn levels_at_once(
 ) -> Result<Option<(Arc<ClothLevels>, Mat3)>, ClothError> {
     let mut state = SystemState::<(Query<Cut>, TransformHelper, ResMut<FabricLibrary>)>::new(world);
     let Ok((cloths, transforms, mut library)) = state.get_mut(world) else { return Ok(None) };
-    let Ok((mesh, attachment, lods, resolution, has_baked, has_skin)) = cloths.get(entity) else {
+    let found = cloths.get(entity);
+    let Ok((mesh, attachment, lods, resolution, regions, has_baked, has_skin)) = found else {
         return Ok(None);
     };
     lods.validate(entity)?;
@@ -48,8 +51,9 @@ pub(crate) fn levels_at_once(
     let attached = attachment.map(|attachment| Attached::of(attachment, mesh));
     let mesh = bake(mesh, scale);
     let resolution = resolution.copied().unwrap_or_default();
+    let regions = regions.map_or(&[][..], |regions| &regions.0);
     library.at_once = true;
-    let found = library.levels(entity, &mesh, attached, lods, resolution);
+    let found = library.levels(entity, &mesh, attached, lods, (resolution, regions));
     library.at_once = false;
     Ok(if let Found::Levels(levels) = found? { Some((levels, scale)) } else { None })
 }

@@ -4,7 +4,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 use bunting_solver::{
-    CoarserMesh, Fabric, FabricBuilder, FabricError, Grid, LevelTransfer, Resampled, Resolution,
+    CoarserMesh, Fabric, FabricBuilder, FabricError, Grid, LevelTransfer, MaterialRegion,
+    Resampled, Resolution,
 };
 
 use crate::cloth::mesh::ClothMesh;
@@ -16,8 +17,8 @@ use crate::fabric::simulated::SimulatedPart;
 /// Part of a finer level's particles that a coarser one has at most. More: it hardly takes less time.
 const MOST_OF_FINER: f32 = 0.6;
 
-/// Builds the levels that are asked for, or as many as the mesh allows, with what is attached pinned. A grid that is held beside
-/// its vertices is resampled to about as many particles as it has.
+/// Builds the levels that are asked for, or as many as the mesh allows, with what is attached pinned, and with regions in which the
+/// material differs. A grid that is held beside its vertices is resampled to about as many particles as it has.
 ///
 /// # Errors
 ///
@@ -27,8 +28,9 @@ pub(super) fn cut_levels(
     attached: &Attached,
     asked: usize,
     resolution: ClothResolution,
+    regions: &[MaterialRegion],
 ) -> Result<ClothLevels, FabricError> {
-    let part = SimulatedPart::of(mesh, attached)?;
+    let part = SimulatedPart::of(mesh, attached)?.with_regions(regions);
     let points = part.points.clone();
     let mut cut = match mesh.as_grid() {
         Some(_) if points.is_empty() => of_grid(part, asked)?,

@@ -4,11 +4,12 @@ use std::collections::HashMap;
 use std::sync::{Arc, Weak};
 
 use bevy_ecs::prelude::*;
-use bunting_solver::FabricError;
+use bunting_solver::{FabricError, MaterialRegion};
 
 use crate::background::Background;
 use crate::cloth::error::ClothError;
 use crate::cloth::mesh::ClothMesh;
+use crate::cloth::regions::{add_key, check_regions};
 use crate::cloth::resolution::ClothResolution;
 use crate::cloth::weights::check_weights;
 use crate::fabric::attached::Attached;
@@ -126,32 +127,34 @@ impl FabricLibrary {
         self.cutting.values().map(left).max().unwrap_or(0)
     }
 
-    /// Returns the levels of a cloth with a valid [`LodSet`], given what an attachment holds, if there is one: built now or before. While another thread builds them it returns what the cloth
+    /// Returns the levels of a cloth with a valid [`LodSet`], given what an attachment holds, if there is one, and where its material
+    /// differs: built now or before. While another thread builds them it returns what the cloth
     /// waits for: ask again in a later tick.
     ///
     /// # Errors
     ///
-    /// The mesh, its weights or the attachment's vertices are invalid.
+    /// The mesh, its weights, its regions or the attachment's vertices are invalid.
     pub fn levels(
         &mut self,
         entity: Entity,
         mesh: &ClothMesh,
         attached: Option<Option<Attached>>,
         lods: &LodSet,
-        resolution: ClothResolution,
+        (resolution, regions): (ClothResolution, &[MaterialRegion]),
     ) -> Result<Found, ClothError> {
         check_weights(mesh.weights(), mesh.vertex_count())
             .map_err(|source| ClothError::Weights { entity, source })?;
+        check_regions(entity, regions, mesh)?;
         let is_rigid = || mesh.weights().contains(&0.0);
         if matches!(attached, Some(None)) && !is_rigid() {
             return Err(ClothError::NoVertices { entity });
         }
         let attached = attached.flatten().unwrap_or_default();
-        let key = content_key(mesh, &attached, lods.levels(), resolution);
+        let key = content_key(mesh, &attached, lods.levels(), (resolution, regions));
         if let Some(levels) = self.cut.get(&key).and_then(Weak::upgrade) {
             return Ok(Found::Levels(levels));
         }
-        let Some(cut) = self.cut_or_wait(&key, mesh, (attached, resolution), lods) else {
+        let Some(cut) = self.cut_or_wait(&key, mesh, (attached, resolution, regions), lods) else {
             let due = self.cutting[&key].due;
             return Ok(Found::Awaited(AwaitedLevels { key, due }));
         };
@@ -165,7 +168,7 @@ impl FabricLibrary {
         &mut self,
         key: &ContentKey,
         mesh: &ClothMesh,
-        (attached, resolution): (Attached, ClothResolution),
+        (attached, resolution, regions): (Attached, ClothResolution, &[MaterialRegion]),
         lods: &LodSet,
     ) -> Option<Result<ClothLevels, FabricError>> {
         if !self.at_once && self.is_cutting_key(key, lods) {
@@ -176,7 +179,7 @@ impl FabricLibrary {
             return Some(cutting.levels.take());
         }
         if self.at_once {
-            return Some(cut_levels(mesh, &attached, asked, resolution));
+            return Some(cut_levels(mesh, &attached, asked, resolution, regions));
         }
         let vertices = work(mesh, &attached, resolution);
         let fits = self.expected == 0 || self.expected + vertices <= VERTICES_PER_TICK;
@@ -187,11 +190,12 @@ impl FabricLibrary {
             self.expected = expected;
         }
         if fits && !is_large {
-            return Some(cut_levels(mesh, &attached, asked, resolution));
+            return Some(cut_levels(mesh, &attached, asked, resolution, regions));
         }
         let due = self.tick + expected.div_ceil(VERTICES_PER_TICK) as u64;
-        let mesh = mesh.clone();
-        let levels = Background::begin(move || cut_levels(&mesh, &attached, asked, resolution));
+        let (mesh, regions) = (mesh.clone(), regions.to_vec());
+        let cut = move || cut_levels(&mesh, &attached, asked, resolution, &regions);
+        let levels = Background::begin(cut);
         self.cutting.insert(key.clone(), Cutting { due, levels });
         None
     }
@@ -224,10 +228,11 @@ fn content_key(
     mesh: &ClothMesh,
     attached: &Attached,
     levels: usize,
-    resolution: ClothResolution,
+    (resolution, regions): (ClothResolution, &[MaterialRegion]),
 ) -> ContentKey {
     let mut key = vec![levels as u32];
     key.extend(resolution.key());
+    add_key(regions, &mut key);
     match mesh {
         ClothMesh::Grid { columns, rows, width, height } => {
             key.extend([0, *columns, *rows, width.to_bits(), height.to_bits()]);
@@ -284,7 +289,7 @@ mod tests {
                 &FLAG,
                 Some(Attached::of(&attachment, &FLAG)),
                 &lods,
-                ClothResolution::Auto,
+                (ClothResolution::Auto, &[]),
             )
             .map(at_once)
     }
@@ -306,7 +311,7 @@ mod tests {
                 &mesh,
                 None,
                 &LodSet::automatic(1),
-                ClothResolution::Auto,
+                (ClothResolution::Auto, &[]),
             );
             library.awaited = true;
             library.begin_tick();
@@ -383,7 +388,7 @@ mod tests {
                 &mesh,
                 Some(Attached::of(&attachment, &mesh)),
                 &lods,
-                ClothResolution::Auto,
+                (ClothResolution::Auto, &[]),
             )
             .map(at_once)
             .expect("a cloth");

@@ -18,6 +18,7 @@ use crate::cloth::instance::{ClothInstance, Kept, Refusal, StateStorage};
 use crate::cloth::material::ClothMaterial;
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::place::place;
+use crate::cloth::regions::ClothRegions;
 use crate::cloth::resolution::ClothResolution;
 use crate::cloth::state::ClothState;
 use crate::fabric::attached::Attached;
@@ -46,10 +47,12 @@ impl Plugin for PreparePlugin {
             .register_type::<ClothMaterial>()
             .register_type::<ClothSeed>()
             .register_type::<ClothResolution>()
+            .register_type::<ClothRegions>()
             .init_resource::<FabricLibrary>()
             .add_observer(clear_removed)
             .add_observer(mark_released::<Attachment>)
             .add_observer(mark_released::<ClothResolution>)
+            .add_observer(mark_released::<ClothRegions>)
             .add_systems(
                 ClothTick,
                 (
@@ -76,8 +79,8 @@ fn clear_removed(
     }
 }
 
-/// Rebuilds a cloth whose [`Attachment`] or [`ClothResolution`] is removed. An observer does this, since removal messages are
-/// dropped after two frames and the next tick may come later.
+/// Rebuilds a cloth whose [`Attachment`], [`ClothResolution`] or [`ClothRegions`] is removed. An observer does this, since removal
+/// messages are dropped after two frames and the next tick may come later.
 fn mark_released<C: Component>(_: On<Remove, C>, mut library: ResMut<FabricLibrary>) {
     library.awaited = true;
 }
@@ -86,6 +89,7 @@ type AnyChanged = Or<(
     Changed<ClothMesh>,
     Changed<ClothMaterial>,
     Changed<ClothResolution>,
+    Changed<ClothRegions>,
     Changed<LodSet>,
     Changed<Attachment>,
 )>;
@@ -107,6 +111,7 @@ pub(crate) struct CutCloth {
     material: Ref<'static, ClothMaterial>,
     lods: Ref<'static, LodSet>,
     resolution: Option<&'static ClothResolution>,
+    regions: Option<Ref<'static, ClothRegions>>,
     attachment: Option<Ref<'static, Attachment>>,
     seed: Option<&'static ClothSeed>,
     has_baked: Has<ScaleBaked>,
@@ -173,6 +178,8 @@ impl CutClothItem<'_, '_> {
     fn is_edited(&self) -> bool {
         self.history.has_new(&self.mesh)
             || self.resolution() != self.instance.resolution
+            || self.regions.is_some() != self.instance.has_regions
+            || self.regions.as_ref().is_some_and(|it| self.history.has_new(it))
             || self.history.has_new(&self.lods)
             || self.attachment.as_ref().is_some_and(|it| self.history.has_new(it))
     }
@@ -276,8 +283,11 @@ impl CutClothItem<'_, '_> {
         let attachment = self.attachment.as_deref();
         let mesh = bake(&self.mesh, self.instance.scale);
         self.instance.resolution = self.resolution();
+        self.instance.has_regions = self.regions.is_some();
+        let regions = self.regions.as_ref().map_or(&[][..], |regions| &regions.0);
         let attached = attachment.map(|attachment| Attached::of(attachment, &self.mesh));
-        library.levels(entity, &mesh, attached, self.valid_lods(), self.resolution())
+        let laid = (self.resolution(), regions);
+        library.levels(entity, &mesh, attached, self.valid_lods(), laid)
     }
 
     /// Finds the scale that is baked into the fabrics. A cloth that has grown keeps its fabrics and its size.

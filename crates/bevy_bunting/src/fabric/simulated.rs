@@ -1,6 +1,6 @@
 //! The simulated part of a mesh, separated from the rigid part by the weights of the vertices (thesis, 6.1).
 
-use bunting_solver::{FabricBuilder, FabricError, MeshPoint};
+use bunting_solver::{FabricBuilder, FabricError, MaterialRegion, MeshPoint};
 
 use crate::cloth::mesh::ClothMesh;
 use crate::fabric::attached::Attached;
@@ -72,6 +72,17 @@ impl SimulatedPart {
         let builder = part_builder(mesh, &whole, &attached, (&vertices, &triangles), &rigid);
         let points = attached.points.into_iter().map(|(point, _)| point).collect();
         Ok(Self { builder, vertices, points, triangles, rigid })
+    }
+
+    /// The part with regions of the mesh in which the material differs.
+    pub fn with_regions(mut self, regions: &[MaterialRegion]) -> Self {
+        let of_part = |weights: &[f32]| -> Vec<f32> {
+            self.vertices.iter().map(|&vertex| weights[vertex as usize]).collect()
+        };
+        let regions: Vec<MaterialRegion> =
+            regions.iter().map(|region| region.map_vertices(of_part)).collect();
+        self.builder = self.builder.regions(regions);
+        self
     }
 
     /// Converts an error of the part's fabric: the part's indices become the mesh's.

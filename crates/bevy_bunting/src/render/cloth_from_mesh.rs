@@ -5,6 +5,7 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
 use crate::cloth::state::ClothState;
+use crate::render::painted_regions::PaintedRegion;
 use crate::render::painted_vertices::PaintedVertices;
 use crate::render::painted_weights::{PaintedDistance, PaintedWeights};
 
@@ -65,6 +66,9 @@ pub struct ClothFromMesh {
     /// Vertices that the entity's [`Attachment`](crate::Attachment) holds, then those that each of its anchors holds,
     /// painted by the artist; written into the attachment, which must be there when the mesh is loaded.
     pub held: Vec<PaintedVertices>,
+    /// Regions in which the material differs, painted by the artist; if there are any, they become the entity's
+    /// [`ClothRegions`](crate::ClothRegions) in place of others.
+    pub regions: Vec<PaintedRegion>,
 }
 
 impl ClothFromMesh {

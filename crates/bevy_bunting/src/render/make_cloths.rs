@@ -24,6 +24,7 @@ use crate::render::deformer::Carried;
 use crate::render::from_skin::{BindPoses, LoadedSkin, unbind};
 use crate::render::level_meshes::LevelMeshes;
 use crate::render::mesh_content::{changed_meshes, content_of};
+use crate::render::painted_regions::painted_regions;
 use crate::render::painted_vertices::painted_attachment;
 use crate::render::source_mesh::SourceMesh;
 use crate::skeleton::limits::SkinLimits;
@@ -160,17 +161,21 @@ pub fn make_cloths(
             let mesh = &converted.shown;
             let limits = wanted.painted_limits(cloth.limits, entity, mesh)?;
             let attachment = painted_attachment(&wanted.held, cloth.attachment, entity, mesh)?;
-            Ok((converted, limits, attachment))
+            let regions = painted_regions(&wanted.regions, entity, mesh)?;
+            Ok((converted, limits, attachment, regions))
         });
         commands.entity(entity).remove::<AwaitsMesh>();
         match converted {
-            Ok((converted, limits, attachment)) => {
+            Ok((converted, limits, attachment, regions)) => {
                 let mut made = commands.entity(entity);
                 if let Some(limits) = limits {
                     made.insert(limits);
                 }
                 if let Some(attachment) = attachment {
                     made.insert(attachment);
+                }
+                if let Some(regions) = regions {
+                    made.insert(regions);
                 }
                 show(converted, (loaded, scale), made_of, &mut meshes, &mut made);
             }

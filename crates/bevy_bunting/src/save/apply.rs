@@ -10,6 +10,7 @@ use crate::cloth::activity::ClothPaused;
 use crate::cloth::instance::{ClothInstance, StateStorage};
 use crate::cloth::material::ClothMaterial;
 use crate::cloth::mesh::ClothMesh;
+use crate::cloth::regions::ClothRegions;
 use crate::cloth::resolution::ClothResolution;
 use crate::cloth::restored::Restored;
 use crate::cloth::state::ClothState;
@@ -65,6 +66,7 @@ fn restore_instance(world: &mut World, fitting: &Fitting, saved: &SavedCloth) {
     let target = cloth.get::<Attachment>().map(|it| it.target_other_than(entity).unwrap_or(entity));
     let lods = cloth.get::<LodSet>().filter(|lods| lods.validate(entity).is_ok()).cloned();
     let resolution = cloth.get::<ClothResolution>().copied().unwrap_or_default();
+    let has_regions = cloth.contains::<ClothRegions>();
     let was_frozen = cloth.get::<ClothInstance>().is_some_and(|instance| instance.frozen);
     let Some(mut instance) = cloth.get_mut::<ClothInstance>() else { return };
     let rest = fitting.levels.fabric(0).rest_positions();
@@ -72,6 +74,7 @@ fn restore_instance(world: &mut World, fitting: &Fitting, saved: &SavedCloth) {
         levels: Some(Arc::clone(&fitting.levels)),
         lods: lods.unwrap_or_default(),
         resolution,
+        has_regions,
         level: saved.level,
         rest_middle: rest.get(rest.len() / 2).copied().unwrap_or_default(),
         storage: StateStorage::from(saved.state.clone()),

@@ -27,7 +27,7 @@ pub enum SnapshotError {
     },
     /// What the cloth is made of has changed since its last tick, so that its state is not that of its components.
     #[error(
-        "the ClothMesh, Attachment, ClothResolution or LodSet of cloth {entity} has changed since the last tick: save it after the next tick"
+        "the ClothMesh, Attachment, ClothResolution, ClothRegions or LodSet of cloth {entity} has changed since the last tick: save it after the next tick"
     )]
     Unsettled {
         /// The cloth.
@@ -35,7 +35,7 @@ pub enum SnapshotError {
     },
     /// The snapshot is one of a cloth of other particles, levels, anchors or joints.
     #[error(
-        "the snapshot is one of another cloth than {entity}: give that the ClothMesh, Attachment, ClothResolution, LodSet, ClothSkin and scale that the saved cloth had, before it is restored"
+        "the snapshot is one of another cloth than {entity}: give that the ClothMesh, Attachment, ClothResolution, ClothRegions, LodSet, ClothSkin and scale that the saved cloth had, before it is restored"
     )]
     OtherCloth {
         /// The cloth that was to be restored.

@@ -11,6 +11,7 @@ use crate::batch::batches::ClothBatches;
 use crate::cloth::activity::ClothActivity;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
+use crate::cloth::regions::ClothRegions;
 use crate::cloth::resolution::ClothResolution;
 use crate::cloth::restored::Pending;
 use crate::cloth::state::ClothState;
@@ -153,6 +154,8 @@ fn is_unsettled(news: &News, cloth: EntityRef, instance: &ClothInstance) -> bool
     instance.cutting.is_some()
         || news.has::<ClothMesh>(entity)
         || news.has::<Attachment>(entity)
+        || news.has::<ClothRegions>(entity)
+        || cloth.contains::<ClothRegions>() != instance.has_regions
         || resolution != instance.resolution
         || (instance.refusal.is_none() && is_attached != has_target)
         || cloth

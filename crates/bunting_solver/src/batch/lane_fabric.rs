@@ -63,7 +63,7 @@ impl<P: Pack> FabricNumbers<P> {
     /// Sets the numbers of some lanes to those of a fabric.
     pub fn set(&mut self, lanes: Range<usize>, LaneFabric { fabric, pole, .. }: &LaneFabric) {
         let diagonal = fabric.diagonal();
-        self.area.lanes_mut()[lanes.clone()].fill(fabric.area());
+        self.area.lanes_mut()[lanes.clone()].fill(fabric.mass_area());
         self.diagonal_length.lanes_mut()[lanes.clone()].fill(diagonal);
         if let (Some(packs), Some(pole)) = (&mut self.pole, pole) {
             packs.set_lanes(&lanes, *pole);

@@ -18,7 +18,8 @@ const STIFF_BENDING: f32 = 1.0;
 pub(crate) fn resists_twist(fabric: &Fabric, material: &FabricMaterial) -> bool {
     let Some(grid) = fabric.grid() else { return false };
     let length = grid.width.max(grid.height);
-    material.area_density * GRAVITY * length.powi(3) < LIMP * material.bend_stiffness
+    let stiffest = material.bend_stiffness * fabric.extremes().liveliest;
+    material.area_density * GRAVITY * length.powi(3) < LIMP * stiffest
 }
 
 /// Stiffnesses of one cloth in a substep.
@@ -39,7 +40,7 @@ impl Stiffness<'_> {
 
     /// Compliance of each class of links, 1/m².
     pub fn of_links(&self, fabric: &Fabric) -> Vec<f32> {
-        let least = LEAST_LINK_COMPLIANCE / fabric.particle_areas()[0];
+        let least = LEAST_LINK_COMPLIANCE / fabric.extremes().light_mass;
         let classes = fabric.link_classes().iter();
         let stiffnesses = classes.map(|class| match self.scheme {
             Scheme::Yarns => class.uncoupled_stiffness(self.material),
@@ -64,6 +65,7 @@ impl Stiffness<'_> {
         let spacing = fabric.bend_profiles().iter().map(|profile| profile.inverse_spacing);
         let finest = spacing.fold(0.0, f32::max);
         let FabricMaterial { bend_stiffness, area_density, .. } = *self.material;
+        let bend_stiffness = bend_stiffness * fabric.extremes().liveliest;
         let phase_squared =
             16.0 * self.step * self.step * bend_stiffness / area_density * finest.powi(4);
         phase_squared > STIFF_BENDING

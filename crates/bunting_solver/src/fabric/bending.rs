@@ -7,6 +7,7 @@
 use super::clamp::CLAMP_FACTOR;
 use super::classes::{Classes, rounded_bits};
 use super::grid::Grid;
+use super::regions::Variation;
 
 /// A row or a column of a grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +43,7 @@ pub(crate) struct Bending {
 
 impl Bending {
     /// Rows and columns of three and more particles.
-    pub fn of(grid: &Grid, inverse_areas: &[f32]) -> Self {
+    pub fn of(grid: &Grid, inverse_areas: &[f32], variation: &Variation) -> Self {
         let [dx, dy] = grid.spacing();
         // The first and the last line represent half a cell.
         let cells =
@@ -60,7 +61,7 @@ impl Bending {
         let bends = |(_, particles, ..): &(bool, Vec<u32>, f32, f32)| particles.len() > 2;
         let lines = rows.chain(columns).filter(bends).map(|(is_row, particles, spacing, width)| {
             let sizes = vec![(spacing, width); particles.len()];
-            let profile = BendProfile::new(&particles, &sizes, inverse_areas);
+            let profile = BendProfile::new(&particles, &sizes, inverse_areas, variation);
             let (class, is_new) = classes.class_of(profile.key());
             if is_new {
                 profiles.push(profile);
@@ -73,7 +74,12 @@ impl Bending {
 
 impl BendProfile {
     /// A line of particles. `sizes` are their distances, m, and the widths of cloth that the line represents there, m.
-    pub(super) fn new(particles: &[u32], sizes: &[(f32, f32)], inverse_areas: &[f32]) -> Self {
+    pub(super) fn new(
+        particles: &[u32],
+        sizes: &[(f32, f32)],
+        inverse_areas: &[f32],
+        variation: &Variation,
+    ) -> Self {
         // One spacing for the whole line, whose second differences the coefficients weigh by the real ones.
         let spacing = sizes[sizes.len() / 2].0;
         let inverse_areas: Vec<f32> =
@@ -83,9 +89,10 @@ impl BendProfile {
             let ratio = spacing / distance;
             width / distance * (ratio * ratio) * if at_clamp { CLAMP_FACTOR } else { 1.0 }
         };
-        let inner = inverse_areas.windows(3).zip(&sizes[1..]);
-        let coefficients =
-            inner.map(|(three, &size)| coefficient([three[0], three[1], three[2]], size));
+        let inner = inverse_areas.windows(3).zip(&sizes[1..]).zip(&particles[1..]);
+        let coefficients = inner.map(|((three, &size), &particle)| {
+            coefficient([three[0], three[1], three[2]], size) * variation.of_bend(particle)
+        });
         Self { inverse_spacing: 1.0 / spacing, coefficients: coefficients.collect(), inverse_areas }
     }
 

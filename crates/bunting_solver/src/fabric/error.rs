@@ -1,5 +1,7 @@
 //! Errors of meshes, grids and materials.
 
+use super::regions::RegionError;
+
 /// Reason why a fabric cannot be built, with the location of the defect.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -151,6 +153,14 @@ pub enum FabricError {
     /// Points were chosen before the mesh was repaired, which numbers its vertices anew.
     #[error("points were chosen before the mesh was repaired: repair it first")]
     PointsBeforeRepair,
+    /// A region of the material cannot be used.
+    #[error("material region {region} cannot be used: {source}")]
+    Region {
+        /// Index of the region.
+        region: usize,
+        /// What is wrong with it.
+        source: RegionError,
+    },
     /// A grid needs at least two particles and a positive length along both sides.
     #[error(
         "a grid of {columns} × {rows} particles over {width} m × {height} m is not a cloth: give at least 2 × 2 and a positive size"

@@ -14,6 +14,7 @@ use super::mesh::{RestMesh, Surface};
 use super::patches::{self, Patch};
 use super::pin::Pin;
 use super::pin_distances::PinDistances;
+use super::regions::{Extremes, Variation};
 use super::rest_bends::RestBends;
 use super::strip::{self, StripRow};
 use super::tethers::{Tether, Tethers};
@@ -50,6 +51,9 @@ pub struct Fabric {
     pub(super) topology: Option<u64>,
     /// cos² of the angle between the rows of a grid and the warp.
     pub(super) warp_cos2: f32,
+    /// m².
+    pub(super) area: f32,
+    pub(super) extremes: Extremes,
 }
 
 /// [`Fabric::tautness`] of a fabric with this [`reach`](Fabric::reach) and shortest link, m. Without pins it counts as a few links long.
@@ -58,12 +62,13 @@ pub(super) fn tautness(reach: f32, shortest: f32) -> f32 {
 }
 
 impl Fabric {
-    /// The constraints of a grid whose rows have an angle to the warp, given its cos².
+    /// The constraints of a grid whose rows have an angle to the warp, given its cos², and how its material varies.
     pub(super) fn of_grid(
         mut mesh: RestMesh,
         surface: &Surface,
         grid: Grid,
         warp_cos2: f32,
+        variation: &Variation,
         tethered: bool,
     ) -> Self {
         let mut patches = patches::patches(&mesh.triangles, &surface.triangle_areas);
@@ -72,7 +77,9 @@ impl Fabric {
             mesh.set_areas(grid.particle_areas());
             patches::quarter(&mut patches, grid);
         }
-        let links = Links::of(&mesh, &grid, warp_cos2);
+        let area = mesh.areas.iter().sum();
+        variation.weigh(&mut mesh);
+        let links = Links::of(&mesh, &grid, warp_cos2, variation);
         let yarns = Yarns::of(&mesh.positions, &links.list);
         let mut chains = Chains::of(&yarns.list, &yarns.colours, &links.list);
         chains.find_cells(grid.cells().map(|(corners, _)| corners));
@@ -84,11 +91,12 @@ impl Fabric {
             shortest,
             probes: links.probes(),
             strips: strip::strips(&grid, &links.list, &chains),
-            hinges: Hinges::of(&mesh, &surface.edges),
-            bending: Bending::of(&grid, &mesh.inverse_areas),
-            twist: Twist::of(&grid, &mesh.inverse_areas),
+            hinges: Hinges::of(&mesh, &surface.edges, variation),
+            bending: Bending::of(&grid, &mesh.inverse_areas, variation),
+            twist: Twist::of(&grid, &mesh.inverse_areas, variation),
             rest_bends: None,
             grid: Some(grid),
+            extremes: variation.extremes(&mesh),
             mesh,
             particle_of_point: Vec::new(),
             patches,
@@ -100,6 +108,7 @@ impl Fabric {
             pin_distances: PinDistances::default(),
             topology: None,
             warp_cos2,
+            area,
         };
         fabric.topology = fabric.hash_topology();
         fabric
@@ -151,8 +160,8 @@ impl Fabric {
     }
 
     /// Area of each particle, m²: a quarter of each cell that it borders on a grid, elsewhere a third of each
-    /// triangle (thesis, 5.1.3). Multiplied by the material's area density it is the mass of the particle, pinned
-    /// or not.
+    /// triangle (thesis, 5.1.3); times the factors on density of the [regions](crate::FabricBuilder::regions) that it lies in.
+    /// Multiplied by the material's area density it is the mass of the particle, pinned or not.
     #[must_use]
     pub fn particle_areas(&self) -> &[f32] {
         &self.mesh.areas
@@ -161,7 +170,26 @@ impl Fabric {
     /// Area of the whole fabric, m².
     #[must_use]
     pub fn area(&self) -> f32 {
+        self.area
+    }
+
+    /// Sum of the [`particle_areas`](Self::particle_areas), m²: the mass of the whole cloth over the material's area density. It is the
+    /// [`area`](Self::area) of a cloth without [regions](crate::FabricBuilder::regions).
+    #[must_use]
+    pub fn mass_area(&self) -> f32 {
         self.mesh.areas.iter().sum()
+    }
+
+    /// The least and the greatest factors on the material.
+    pub(crate) fn extremes(&self) -> &Extremes {
+        &self.extremes
+    }
+
+    /// Factor on the stretch stiffness of a material at one of this fabric's [`links`](Self::links), by the
+    /// [regions](crate::FabricBuilder::regions) that it lies in: 1 without.
+    #[must_use]
+    pub fn stretch_factor(&self, link: &Link) -> f32 {
+        self.links.classes[link.class as usize].factor
     }
 
     /// Whether a particle is pinned to the cloth's frame.

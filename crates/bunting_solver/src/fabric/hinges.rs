@@ -7,6 +7,7 @@ use super::classes::{Classes, rounded_bits};
 use super::colour::colour;
 use super::material::FabricMaterial;
 use super::mesh::RestMesh;
+use super::regions::Variation;
 use super::topology::Edge;
 
 /// A bending constraint between two triangles that share an edge.
@@ -50,7 +51,7 @@ pub(crate) struct Hinges {
 
 impl Hinges {
     /// One hinge at each edge between two triangles, unless all four particles are pinned.
-    pub fn of(mesh: &RestMesh, edges: &[Edge]) -> Self {
+    pub fn of(mesh: &RestMesh, edges: &[Edge], variation: &Variation) -> Self {
         let mut table = Vec::new();
         let mut classes = Classes::new();
         let hinge = |edge: &Edge| {
@@ -62,7 +63,7 @@ impl Hinges {
             let corners = mesh.positions_of(particles);
             let at_clamp =
                 mesh.is_pinned(a) && mesh.is_pinned(b) && (mesh.is_pinned(c) || mesh.is_pinned(d));
-            let coefficient = coefficient(corners, at_clamp);
+            let coefficient = coefficient(corners, at_clamp) * variation.of_hinge(edge.ends);
             let (class, is_new) = classes.class_of([rounded_bits(coefficient)]);
             if is_new {
                 table.push(HingeClass { coefficient });

@@ -15,6 +15,7 @@ use super::edge_sums::EdgeSums;
 use super::grid::Grid;
 use super::material::FabricMaterial;
 use super::mesh::RestMesh;
+use super::regions::Variation;
 
 /// A distance constraint between two particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,6 +79,8 @@ pub(crate) struct LinkClass {
     pub floor: f32,
     /// cos² of the angle between the rows of the grid and the warp, where it varies from link to link; else one.
     pub warp_cos2: f32,
+    /// Factor on the stiffness by regions in which the material differs.
+    pub factor: f32,
 }
 
 impl LinkClass {
@@ -85,7 +88,8 @@ impl LinkClass {
     pub fn of_family(family: LinkFamily, coefficient: f32, warp_cos2: f32) -> Self {
         let mut coefficients = [0.0; 3];
         coefficients[family as usize] = coefficient;
-        Self { coefficients, floor: LEAST_STIFFNESS as f32 * coefficient, warp_cos2 }
+        let floor = LEAST_STIFFNESS as f32 * coefficient;
+        Self { coefficients, floor, warp_cos2, factor: 1.0 }
     }
 
     /// Stiffness of the link for a material, N/m, if diagonals resist stretch, too: with
@@ -94,7 +98,8 @@ impl LinkClass {
         // Coefficients of zero are skipped: an inextensible material's moduli are infinite.
         let material = &material.turned(self.warp_cos2);
         let moduli = material.lattice_moduli();
-        self.combined(moduli, |coefficient| coefficient != 0.0).max(self.least(material))
+        let stiffness = self.combined(moduli, |coefficient| coefficient != 0.0);
+        stiffness.max(self.least(material)) * self.factor
     }
 
     /// Stiffness of the link for a material, N/m, if diagonals resist shear alone (`constraints/shear.rs`).
@@ -104,7 +109,8 @@ impl LinkClass {
         let material = &material.turned(self.warp_cos2);
         let FabricMaterial { warp_stiffness, weft_stiffness, shear_stiffness, .. } = *material;
         let moduli = [warp_stiffness, weft_stiffness, shear_stiffness];
-        self.combined(moduli, |coefficient| coefficient > 0.0).max(self.least(material))
+        let stiffness = self.combined(moduli, |coefficient| coefficient > 0.0);
+        stiffness.max(self.least(material)) * self.factor
     }
 
     /// The sum of the moduli times those coefficients for which `counts` holds.
@@ -145,9 +151,9 @@ pub(crate) struct Links {
 }
 
 impl Links {
-    /// Links along the rows, columns and both diagonals of a grid, given cos² of the angle between its rows and the warp. A link
-    /// between two pinned particles moves nothing and is left out.
-    pub fn of(mesh: &RestMesh, grid: &Grid, warp_cos2: f32) -> Self {
+    /// Links along the rows, columns and both diagonals of a grid, given cos² of the angle between its rows and the warp, and how the
+    /// material varies. A link between two pinned particles moves nothing and is left out.
+    pub fn of(mesh: &RestMesh, grid: &Grid, warp_cos2: f32, variation: &Variation) -> Self {
         let mut sums = EdgeSums::new(mesh.positions.len());
         let along_rows = grid.uvs();
         // A cell is split both ways, and each way contributes half.
@@ -158,7 +164,9 @@ impl Links {
             }
         }
         let links = sums.sorted().map(|(ends, sum)| {
-            (ends, LinkClass { warp_cos2, ..sum.class() }, LinkFamily::on_grid(grid, ends))
+            let factor = variation.of_link(ends);
+            let class = LinkClass { warp_cos2, factor, ..sum.class() };
+            (ends, class, LinkFamily::on_grid(grid, ends))
         });
         Self::of_classes(mesh, links)
     }
@@ -174,8 +182,8 @@ impl Links {
         let mut classes = Classes::new();
         let links = links.map(|(particles, value, family)| {
             let [a, b, c] = value.coefficients;
-            let (class, is_new) =
-                classes.class_of([a, b, c, value.floor, value.warp_cos2].map(rounded_bits));
+            let key = [a, b, c, value.floor, value.warp_cos2, value.factor];
+            let (class, is_new) = classes.class_of(key.map(rounded_bits));
             if is_new {
                 table.push(value);
             }
@@ -228,6 +236,7 @@ impl LinkSum {
             }),
             floor: (LEAST_STIFFNESS * self.isotropic) as f32,
             warp_cos2: 1.0,
+            factor: 1.0,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A cloth at rest: the immutable part that all cloths of one mesh share.
 //!
 //! A [`Fabric`] holds geometry only. Masses are areas (a particle's mass is its area times the material's area
-//! density), and the stiffness of a constraint is a modulus of the material times a coefficient of the
+//! density and the factors of regions), and the stiffness of a constraint is a modulus of the material times a coefficient of the
 //! constraint, so that cloths of different [`FabricMaterial`]s share one fabric and one batch.
 //!
 //! From a mesh to a fabric, a file a step: [`FabricBuilder`] checks the mesh and merges its seams
@@ -9,7 +9,7 @@
 //! diagonals, and `yarns` cuts the links into straight paths. On any other mesh `remesh/` lays nodes along warp and weft, `net/` finds the
 //! lines between them, `of_nodes` makes particles of the nodes, and `carried` lets the mesh follow. Of both, `chains` arranges the lines
 //! for solving, `bending` and `twist` resist bending, `tethers` bounds the distances from the pins, and `patches` pairs triangles for
-//! sums over them.
+//! sums over them. Where the material differs from place to place, `regions/` finds factors on masses and stiffnesses before all that.
 
 mod bending;
 mod builder;
@@ -39,6 +39,7 @@ mod patches;
 mod pin;
 mod pin_distances;
 mod pin_paths;
+mod regions;
 mod remesh;
 mod rest_bends;
 mod rest_paths;
@@ -70,3 +71,4 @@ pub use fabric::Fabric;
 pub use grid::Grid;
 pub use links::{Link, LinkFamily};
 pub use material::FabricMaterial;
+pub use regions::{MaterialRegion, RegionError, RegionShape};

@@ -12,7 +12,7 @@ use super::twist::Twist;
 impl Fabric {
     /// A fabric whose particles are the nodes of a net.
     pub(super) fn of_nodes(net: Net, tethered: bool) -> Self {
-        let Net { mesh, edges, links, yarns, corners, bending, rest_bends } = net;
+        let Net { mesh, edges, links, yarns, corners, bending, rest_bends, area, variation } = net;
         let mut chains = Chains::of(&yarns.list, &yarns.colours, &links.list);
         chains.find_cells(corners.into_iter());
         chains.measure_diagonals(&mesh.positions);
@@ -23,7 +23,7 @@ impl Fabric {
             bending,
             twist: Twist::default(),
             rest_bends: Some(rest_bends),
-            hinges: Hinges::of(&mesh, &edges),
+            hinges: Hinges::of(&mesh, &edges, &variation),
             pin_distances: PinDistances::default(),
             tautness: tautness(reach, shortest),
             shortest,
@@ -33,8 +33,10 @@ impl Fabric {
             strips: Vec::new(),
             topology: None,
             warp_cos2: 1.0,
+            area,
             grid: None,
             tethers,
+            extremes: variation.extremes(&mesh),
             mesh,
             particle_of_point: Vec::new(),
             links,

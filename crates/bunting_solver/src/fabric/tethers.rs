@@ -72,7 +72,7 @@ impl Tethers {
 }
 
 /// The pinned particles of the edges: nodes of a grid where there is no cloth have none.
-fn pins(mesh: &RestMesh, edges: &[Edge]) -> Vec<Pin> {
+pub(super) fn pins(mesh: &RestMesh, edges: &[Edge]) -> Vec<Pin> {
     let mut has_edge = vec![false; mesh.positions.len()];
     edges.iter().flat_map(|edge| edge.ends).for_each(|end| has_edge[end as usize] = true);
     let particles = 0..mesh.positions.len() as u32;

@@ -6,6 +6,7 @@
 
 use super::classes::{Classes, rounded_bits};
 use super::grid::Grid;
+use super::regions::Variation;
 
 /// The cells between two neighbouring lines of a grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +37,7 @@ pub(crate) struct Twist {
 
 impl Twist {
     /// The ribbons along a grid's longer side, where twist accumulates over most cells.
-    pub fn of(grid: &Grid, inverse_areas: &[f32]) -> Self {
+    pub fn of(grid: &Grid, inverse_areas: &[f32], variation: &Variation) -> Self {
         let along_columns = grid.rows >= grid.columns;
         let (across, along) =
             if along_columns { (grid.columns, grid.rows) } else { (grid.rows, grid.columns) };
@@ -46,13 +47,15 @@ impl Twist {
         let inverse_area = |particle: u32| inverse_areas[particle as usize];
         let [dx, _] = grid.spacing();
         let cell_area = dx * grid.height / (grid.rows - 1) as f32;
+        let coefficient =
+            |[a, b]: [u32; 2], [c, d]: [u32; 2]| 2.0 / cell_area * variation.of_twist([a, b, c, d]);
         let mut profiles: Vec<RibbonProfile> = Vec::new();
         let mut classes = Classes::new();
         let ribbon = |line: u32| {
             let pair = |place: u32| [particle(line, place), particle(line + 1, place)];
             let pairs: Vec<[u32; 2]> = (0..along).map(pair).collect();
             let profile = RibbonProfile {
-                coefficients: vec![2.0 / cell_area; along as usize - 1],
+                coefficients: pairs.windows(2).map(|ends| coefficient(ends[0], ends[1])).collect(),
                 inverse_areas: pairs.iter().map(|pair| pair.map(inverse_area)).collect(),
             };
             let (class, is_new) = classes.class_of(profile.key());

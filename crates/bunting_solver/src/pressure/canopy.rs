@@ -94,13 +94,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
-    /// The mean velocity of a cloth's particles, by their areas, m/s.
+    /// The mean velocity of a cloth's particles, by their masses, m/s.
     fn mean_velocity(&self, cloth: usize) -> Vec3 {
         let fabric = &self.fabric_of(cloth).fabric;
         let areas = fabric.particle_areas().iter().enumerate();
         let sum: Vec3 = areas
             .map(|(particle, &area)| self.vector(&self.velocity, particle, cloth) * area)
             .sum();
-        sum / fabric.area()
+        sum / fabric.mass_area()
     }
 }

@@ -19,7 +19,8 @@ pub(crate) struct LanePressure {
     /// Edges of the border, in the direction in which their triangles run, if lids close it: triangles from each edge to
     /// the border's middle.
     pub lids: Vec<[u32; 2]>,
-    /// Mean area of a particle at rest: the square of the particles' distance, m².
+    /// Mean mass of a particle over the material's area density, m²: the square of the particles' distance where the material is the same
+    /// everywhere.
     pub spacing_squared: f32,
     /// Volume at rest, m³.
     pub rest_volume: f32,
@@ -52,7 +53,7 @@ impl LanePressure {
             air,
             border,
             lids: if has_lids { edges } else { Vec::new() },
-            spacing_squared: fabric.area() / fabric.particle_count() as f32,
+            spacing_squared: fabric.mass_area() / fabric.particle_count() as f32,
             rest_volume: 0.0,
             gradient: gradient_of(rest, fabric.triangles()),
             positions: rest.to_vec(),

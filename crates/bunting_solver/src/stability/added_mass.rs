@@ -74,7 +74,7 @@ impl InverseMasses {
         let pins = fabric.pins();
         if !pins.is_empty() && pins.iter().all(|pin| pin.isolated) {
             let pins: Vec<u32> = pins.iter().map(|pin| pin.particle).collect();
-            let load = fabric.area() * GRAVITY / pins.len() as f32;
+            let load = fabric.mass_area() * GRAVITY / pins.len() as f32;
             let needed = needed(fabric, &pins, load, step);
             for (inverse_mass, needed) in masses.level.iter_mut().zip(needed) {
                 *inverse_mass = inverse_mass.min(1.0 / needed);
@@ -105,7 +105,7 @@ pub(crate) fn inertias(inverse_masses: &[f32]) -> Vec<f32> {
 
 /// Reduction of a cloth's inverse masses by an upright pole, compared with one over the areas, 1/m².
 fn upright_reduction(fabric: &Fabric, pole: &Pole, step: f32) -> Vec<f32> {
-    let load = fabric.area() * GRAVITY * LOAD_OF_END;
+    let load = fabric.mass_area() * GRAVITY * LOAD_OF_END;
     let inverse_areas = fabric.inverse_areas();
     let areas = inverse_areas.iter().map(|inverse_area| 1.0 / inverse_area);
     // The mass of pins is infinite, so nothing is added to it.
@@ -113,7 +113,7 @@ fn upright_reduction(fabric: &Fabric, pole: &Pole, step: f32) -> Vec<f32> {
         .zip(areas)
         .map(|(needed, area)| (needed - area).max(0.0))
         .collect();
-    let most = MOST_ADDED * fabric.area();
+    let most = MOST_ADDED * fabric.mass_area();
     let part = (most / added.iter().sum::<f32>().max(most)).min(1.0);
     let reduction = |(&inverse_area, added): (&f32, f32)| {
         // The reduction 1/A − 1/(A + ΔA).
@@ -128,8 +128,8 @@ fn upright_reduction(fabric: &Fabric, pole: &Pole, step: f32) -> Vec<f32> {
 /// In a strip as wide as its links are long, the tension over that length is the strain times the stiffness,
 /// at every resolution.
 fn inertia_per_strain(fabric: &Fabric, material: &FabricMaterial, step: f32) -> f32 {
-    let stiffest = material.warp_stiffness.max(material.weft_stiffness);
-    let most = fabric.particle_areas()[0] / LEAST_LINK_COMPLIANCE;
+    let stiffest = fabric.extremes().stiffest_stretch(material);
+    let most = fabric.extremes().light_mass / LEAST_LINK_COMPLIANCE;
     INERTIA_PER_TENSION * (step * step * stiffest / material.area_density).min(most)
 }
 

@@ -89,7 +89,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             _ => fabric.reach(),
         };
         let stretch = LoadStretch::new(
-            &fabric.material_along_rows(&state.material),
+            &fabric.extremes().weakest(&fabric.material_along_rows(&state.material)),
             &state.drive,
             reach,
             state.pin_strain.greatest,

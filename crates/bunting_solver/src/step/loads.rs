@@ -100,12 +100,13 @@ pub struct Loads {
 
 impl Loads {
     /// Acceleration of a cloth along the wind by skin friction, ½ρ C_t u²/σ, m/s², with u relative to the frame in a
-    /// tick of `tick` seconds.
+    /// tick of `tick` seconds, where a fabric is lightest.
     #[must_use]
-    pub fn of_air(drive: &Drive, material: &FabricMaterial, tick: f32) -> f32 {
+    pub fn of_air(fabric: &Fabric, drive: &Drive, material: &FabricMaterial, tick: f32) -> f32 {
         let wind = drive.wind - drive.motion.translation / tick;
         let friction = drive.air_density * material.friction_coefficient;
-        0.5 * friction * wind.length_squared() / material.area_density
+        let lightest = material.area_density * fabric.extremes().lightest;
+        0.5 * friction * wind.length_squared() / lightest
     }
 
     /// Acceleration of the frame between two ticks of `tick` seconds, at the farthest particle of a fabric, m/s².
@@ -159,8 +160,9 @@ impl Loads {
         if mean <= 0.0 || fabric.reach() <= 0.0 {
             return 0.0;
         }
-        let stiffest = material.warp_stiffness.max(material.weft_stiffness).min(STIFFEST);
-        stiffest * mean / (material.area_density * fabric.reach())
+        let extremes = fabric.extremes();
+        let stiffest = extremes.stiffest_stretch(material).min(STIFFEST);
+        stiffest * mean / (material.area_density * extremes.lightest * fabric.reach())
     }
 
     /// The load κ p l/L of colliders that press the cloth with an acceleration p, m/s².
@@ -241,7 +243,7 @@ mod tests {
     fn streaming(wind: f32, area_density: f32) -> Loads {
         let material = FabricMaterial { area_density, ..FabricMaterial::FLAG_POLYESTER };
         let drive = Drive { wind: Vec3::X * wind, ..Drive::default() };
-        Loads { air: Loads::of_air(&drive, &material, TICK), ..Loads::default() }
+        Loads { air: Loads::of_air(&flag(5), &drive, &material, TICK), ..Loads::default() }
     }
 
     #[test]
@@ -258,7 +260,7 @@ mod tests {
     fn wind_counts_relative_to_the_frame() {
         let motion = FrameMotion { translation: Vec3::X * 25.0 * TICK, ..FrameMotion::NONE };
         let drive = Drive { wind: Vec3::X * 25.0, motion, ..Drive::default() };
-        assert!(Loads::of_air(&drive, &FabricMaterial::NYLON, TICK) < 1e-6);
+        assert!(Loads::of_air(&flag(5), &drive, &FabricMaterial::NYLON, TICK) < 1e-6);
     }
 
     #[test]

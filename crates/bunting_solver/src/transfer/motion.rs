@@ -32,7 +32,7 @@ pub(super) fn match_momentum(fabric: &Fabric, wanted: DVec3, velocities: &mut [V
 /// Σ A |v − v̄|², m⁴/s², with v̄ the mean velocity: twice the kinetic energy per area density, in the frame that moves
 /// with the centre of mass.
 pub(super) fn internal_motion(fabric: &Fabric, velocities: &[Vec3]) -> f64 {
-    let mean = area_moment(fabric, velocities) / f64::from(fabric.area());
+    let mean = area_moment(fabric, velocities) / f64::from(fabric.mass_area());
     let areas = fabric.particle_areas().iter().map(|&area| f64::from(area));
     areas.zip(velocities).map(|(area, v)| area * (v.as_dvec3() - mean).length_squared()).sum()
 }

@@ -19,6 +19,7 @@ mod moving_pins;
 mod physics;
 mod points;
 mod pressure;
+mod regions;
 mod resampled;
 mod rest_on_edges;
 mod self_contact;

@@ -7,7 +7,7 @@ use crate::gltf::components::insert_components;
 use crate::render::tests::reflect::public_types;
 
 /// Each public component as an artist may write it, with the fields that have no default; `{}` is a default.
-const COMPONENTS: [(&str, &str); 36] = [
+const COMPONENTS: [(&str, &str); 37] = [
     ("AnchorReactions", "{}"),
     (
         "Attachment",
@@ -35,6 +35,10 @@ const COMPONENTS: [(&str, &str); 36] = [
     ("ClothPreroll", "{}"),
     ("ClothPressure", r#"{"Constant": {"pressure": 30.0}}"#),
     ("ClothReactions", "{}"),
+    (
+        "ClothRegions",
+        r#"[{"shape": {"UvLine": {"from": [0, 0.3], "to": [1, 0.3], "width": 0.05}}, "bending": 1e4}]"#,
+    ),
     ("ClothResolution", r#"{"CellSize": 0.03}"#),
     ("ClothSeed", "7"),
     ("ClothSkin", r#"{"joints": ["Post"]}"#),

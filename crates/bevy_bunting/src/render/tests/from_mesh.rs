@@ -219,3 +219,24 @@ fn scales_are_baked_and_mirrored_meshes_turned() {
     let [a, b, c] = [0, 1, 2].map(|corner| positions[indices[corner] as usize]);
     assert!((b - a).cross(c - a).z > 0.0, "the front still faces +z");
 }
+
+#[test]
+fn regions_of_the_material_are_painted() {
+    let mut app = app(TICK);
+    let mesh = painted(&mut app);
+    let given = add(&mut app, mesh);
+    let by_name = |name: &str| {
+        let paint = VertexPaint::Attribute(name.to_owned());
+        let heavy = PaintedRegion { paint, density: 5.0, ..PaintedRegion::default() };
+        ClothFromMesh { regions: vec![heavy], ..ClothFromMesh::painted() }
+    };
+    let cloth = spawn_from(&mut app, &given, by_name("Pin"));
+    let missing = spawn_from(&mut app, &given, by_name("pin"));
+    run(&mut app, 10);
+    assert_eq!(failures(&app), [ClothError::NotPainted { entity: missing, key: "pin" }]);
+    let fabric = app.world().get::<ClothState>(cloth).and_then(ClothState::fabric);
+    let fabric = fabric.expect("a cloth");
+    // Half of the first of eight columns of cells.
+    let heavier = fabric.mass_area() / fabric.area();
+    assert!(heavier > 1.02 && heavier < 1.4, "{heavier}");
+}

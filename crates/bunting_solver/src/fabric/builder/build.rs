@@ -5,6 +5,7 @@ use super::source::FabricBuilder;
 use crate::fabric::error::FabricError;
 use crate::fabric::fabric::Fabric;
 use crate::fabric::grid::Grid;
+use crate::fabric::interpolation::Term;
 use crate::fabric::mesh::{RestMesh, Surface};
 
 impl FabricBuilder {
@@ -21,7 +22,10 @@ impl FabricBuilder {
             return self.laid(resolution).map(|laid| laid.fabric);
         };
         let (mesh, surface) = self.rest_mesh()?;
-        Ok(Fabric::of_grid(mesh, &surface, grid, 1.0, self.tethered))
+        let count = self.positions.len() as u32;
+        let itself = || (0..count).map(|from| vec![Term { from, weight: 1.0 }]).collect();
+        let variation = self.variation_of_grid(&mesh, &surface, &grid, itself);
+        Ok(Fabric::of_grid(mesh, &surface, grid, 1.0, &variation, self.tethered))
     }
 
     /// Checks the mesh, which takes much less time than to build a fabric.

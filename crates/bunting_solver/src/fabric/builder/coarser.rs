@@ -37,7 +37,9 @@ impl FabricBuilder {
         let pins: Vec<u32> = among.map(|(at, _)| at).collect();
         // The grid may have been placed somewhere.
         let positions = vertices.iter().map(|&vertex| self.positions[vertex as usize]).collect();
-        let builder = Self { positions, ..Self::grid(halved) }.pin(pins).tethered(self.tethered);
+        let regions = self.halved_regions(&grid, &halved);
+        let builder = Self { positions, regions, ..Self::grid(halved) };
+        let builder = builder.pin(pins).tethered(self.tethered);
         Some(CoarserMesh { builder, vertices })
     }
 }

@@ -6,6 +6,7 @@ mod mesh_point;
 mod on_surface;
 mod points;
 mod rectangle;
+mod regions;
 mod repair;
 mod resampled;
 mod rest_normals;

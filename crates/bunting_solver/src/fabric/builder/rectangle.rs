@@ -12,6 +12,7 @@ use crate::fabric::fabric::Fabric;
 use crate::fabric::grid::Grid;
 use crate::fabric::interpolation::{Interpolation, Term};
 use crate::fabric::mesh::RestMesh;
+use crate::fabric::regions::MaterialRegion;
 use crate::fabric::remesh::{OnNodes, Source};
 
 /// Greatest distance of a vertex from the plane, and of one at the border from the nearest side, as a part of the longer side.
@@ -126,7 +127,12 @@ impl Rectangle {
     /// # Errors
     ///
     /// Those of the grid.
-    pub fn laid(&self, mesh: &RestMesh, tethered: bool) -> Result<Option<OnSurface>, FabricError> {
+    pub fn laid(
+        &self,
+        mesh: &RestMesh,
+        regions: Vec<MaterialRegion>,
+        tethered: bool,
+    ) -> Result<Option<OnSurface>, FabricError> {
         let Self { grid, .. } = self;
         let cells: Vec<Vec2> = mesh.positions.iter().map(|at| self.in_cells(*at)).collect();
         let Some(within) = self.nodes_in_triangles(mesh, &cells) else { return Ok(None) };
@@ -154,12 +160,15 @@ impl Rectangle {
         let builder =
             FabricBuilder { uv: uv.collect(), positions, pinned, ..FabricBuilder::grid(*grid) };
         let (nodes, surface) = builder.rest_mesh()?;
+        let corners: Vec<Vec<Term>> = within.iter().map(|terms| terms.to_vec()).collect();
+        // Their weights are those of the mesh's places.
+        let builder = FabricBuilder { regions, ..builder };
+        let variation = builder.variation_of_grid(&nodes, &surface, grid, || corners.clone());
         let mut rows = Interpolation::default();
         cells.iter().for_each(|at| rows.push(self.around(*at)));
-        let fabric = Fabric::of_grid(nodes, &surface, *grid, self.warp_cos2, tethered);
+        let fabric = Fabric::of_grid(nodes, &surface, *grid, self.warp_cos2, &variation, tethered);
         let of_place = |row: &[Term]| Term::heaviest(row).map_or(0, |term| term.from);
         let particles = rows.rows().map(of_place).collect();
-        let corners = within.iter().map(|terms| terms.to_vec()).collect();
         let on_nodes = OnNodes { rows, ..OnNodes::default() };
         Ok(Some(OnSurface { fabric, on_nodes, particles, corners }))
     }

@@ -11,6 +11,7 @@ use crate::fabric::fabric::Fabric;
 use crate::fabric::interpolation::{Interpolation, Term};
 use crate::fabric::mesh::{RestMesh, Surface};
 use crate::fabric::net::Net;
+use crate::fabric::regions::{Ground, MaterialRegion};
 use crate::fabric::remesh::{Nodes, OnNodes, PointOn, Refined, Source};
 
 /// Greatest length of an edge of the mesh on which a lattice is found, in cells. Longer: where lines of the lattice end, holes as
@@ -105,13 +106,17 @@ impl FabricBuilder {
         };
         let rectangle = || Rectangle::of(&mesh, &source, size as f32);
         let on_grid = match points.is_empty().then(rectangle).flatten() {
-            Some(rectangle) => rectangle.laid(&mesh, self.tethered)?,
+            Some(rectangle) => {
+                rectangle.laid(&mesh, self.regions_of(&vertex_of_place), self.tethered)?
+            }
             None => None,
         };
         let OnSurface { mut fabric, on_nodes, particles, corners } = match on_grid {
             Some(on_grid) => on_grid,
             None => {
-                on_lattice(&mesh, &surface, (source, &points), size, self.tethered).map_err(at)?
+                let regions = self.regions_of(&vertex_of_place);
+                let surface = (&mesh, &surface);
+                on_lattice(surface, (source, &points), size, &regions, self.tethered).map_err(at)?
             }
         };
         let OnNodes { rows, heights, held } = on_nodes;
@@ -138,10 +143,10 @@ impl FabricBuilder {
 ///
 /// A place where there can't be cells.
 fn on_lattice(
-    mesh: &RestMesh,
-    surface: &Surface,
+    (mesh, surface): (&RestMesh, &Surface),
     (given, points): (Source, &[PointOn]),
     size: f64,
+    regions: &[MaterialRegion],
     tethered: bool,
 ) -> Result<OnSurface, u32> {
     let refined = Refined::of(mesh, surface, LONGEST_EDGE * size as f32, points);
@@ -152,12 +157,6 @@ fn on_lattice(
     let of_refined = refined.as_ref().map(|it| Source::new(&it.mesh, &it.surface, &it.points));
     let source = of_refined.unwrap_or(given);
     let nodes = Nodes::on_lattice(&source, size).map_err(original)?;
-    let (net, cells) = Net::of(&nodes).ok_or(0_u32)?;
-    let cells = cells.iter().map(|cell| &cell[..]);
-    let count = mesh.positions.len();
-    let on_nodes = nodes.carried(&source, cells, count).map_err(original)?;
-    let pins: Vec<u32> = nodes.pins_of_vertices(&source, count).collect();
-    let particles = particles_of_places(mesh, &nodes, &pins, &on_nodes.rows);
     let corners = nodes.corners.iter().map(|row| match &refined {
         Some(refined) => {
             let origins = |it: &Term| (&refined.origins[it.from as usize][..], it.weight);
@@ -165,7 +164,17 @@ fn on_lattice(
         }
         None => row.clone(),
     });
-    let corners = corners.collect();
+    let corners: Vec<Vec<Term>> = corners.collect();
+    let vary = |mesh: &RestMesh, cells: Vec<Vec<u32>>| {
+        let (edges, corners) = (&nodes.edges, corners.clone());
+        Ground { mesh, edges, is_flat: false, cells, corners }.variation(regions)
+    };
+    let (net, cells) = Net::of(&nodes, vary).ok_or(0_u32)?;
+    let cells = cells.iter().map(|cell| &cell[..]);
+    let count = mesh.positions.len();
+    let on_nodes = nodes.carried(&source, cells, count).map_err(original)?;
+    let pins: Vec<u32> = nodes.pins_of_vertices(&source, count).collect();
+    let particles = particles_of_places(mesh, &nodes, &pins, &on_nodes.rows);
     let mut fabric = Fabric::of_nodes(net, tethered);
     fabric.particle_of_point = nodes.of_points(&source);
     Ok(OnSurface { fabric, on_nodes, particles, corners })

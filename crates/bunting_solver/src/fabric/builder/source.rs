@@ -6,6 +6,7 @@ use glam::{Quat, Vec2, Vec3};
 
 use super::mesh_point::MeshPoint;
 use crate::fabric::grid::Grid;
+use crate::fabric::regions::MaterialRegion;
 use crate::fabric::weld::{Weld, default_distance, weld};
 
 /// Collects a mesh and its pins, checks them, and builds a [`Fabric`](crate::Fabric) from them.
@@ -38,6 +39,8 @@ pub struct FabricBuilder {
     pub(super) tethered: bool,
     /// The grid that the mesh was made from.
     pub(super) grid: Option<Grid>,
+    /// Where the material differs.
+    pub(super) regions: Vec<MaterialRegion>,
 }
 
 impl FabricBuilder {
@@ -56,6 +59,7 @@ impl FabricBuilder {
             pinned_before_uv: false,
             tethered: true,
             grid: None,
+            regions: Vec::new(),
         }
     }
 
@@ -116,6 +120,13 @@ impl FabricBuilder {
         let chosen = (0..self.positions.len())
             .filter(|&vertex| predicate(self.positions[vertex], uv(vertex)));
         self.pinned.extend(chosen.map(|vertex| vertex as u32));
+        self
+    }
+
+    /// Adds regions in which the material differs: hems, battens, patches.
+    #[must_use]
+    pub fn regions(mut self, regions: impl IntoIterator<Item = MaterialRegion>) -> Self {
+        self.regions.extend(regions);
         self
     }
 

@@ -44,6 +44,10 @@ impl FabricBuilder {
         if let Some(vertex) = self.uv.iter().position(|uv| !uv.is_finite()) {
             return Err(FabricError::UvNotFinite { vertex });
         }
+        for (region, of) in self.regions.iter().enumerate() {
+            let is_valid = of.validate(vertices, !self.uv.is_empty());
+            is_valid.map_err(|source| FabricError::Region { region, source })?;
+        }
         match self.weld_distance {
             Some(distance) if !(distance >= 0.0 && distance.is_finite()) => {
                 Err(FabricError::WeldDistance { distance })

@@ -9,6 +9,7 @@ use super::links::Side;
 use crate::fabric::bending::{BendLine, BendProfile, Bending};
 use crate::fabric::directions::{Directions, Towards};
 use crate::fabric::mesh::RestMesh;
+use crate::fabric::regions::Variation;
 use crate::fabric::rest_bends::RestBends;
 use crate::fabric::topology::ascending;
 
@@ -20,13 +21,13 @@ struct Crossings {
     neighbours: Vec<[u32; 4]>,
 }
 
-/// The lines along which a net bends, given its sides, and its second differences at rest.
+/// The lines along which a net bends, given its sides and how its material varies, and its second differences at rest.
 pub(super) fn bending(
     mesh: &RestMesh,
     cells: &[Cell],
     lines: &[Line],
     directions: &Directions,
-    sides: &BTreeMap<[u32; 2], Side>,
+    (sides, variation): (&BTreeMap<[u32; 2], Side>, &Variation),
 ) -> (Bending, RestBends) {
     let crossings = crossings(mesh, cells, lines, directions);
     let mut bending = Bending::default();
@@ -44,7 +45,7 @@ pub(super) fn bending(
                     let particles = nodes[first - 1..=last + 1].to_vec();
                     let sizes = sizes(mesh, &particles, sides);
                     let inverse_areas = &mesh.inverse_areas;
-                    let profile = BendProfile::new(&particles, &sizes, inverse_areas);
+                    let profile = BendProfile::new(&particles, &sizes, inverse_areas, variation);
                     let profile_index = bending.profiles.len() as u32;
                     bending.profiles.push(profile);
                     let is_row = kind == 0;

@@ -8,6 +8,7 @@ use crate::fabric::directions::{Directions, Towards};
 use crate::fabric::edge_sums::EdgeSums;
 use crate::fabric::links::{Link, LinkClass, LinkFamily, Links};
 use crate::fabric::mesh::RestMesh;
+use crate::fabric::regions::Variation;
 use crate::fabric::topology::ascending;
 use crate::fabric::yarns::{Yarn, Yarns};
 
@@ -78,6 +79,7 @@ pub(super) fn links(
     mesh: &RestMesh,
     cells: &[Cell],
     directions: &Directions,
+    variation: &Variation,
 ) -> (Vec<Unlisted>, BTreeMap<[u32; 2], Side>) {
     let vector = |[from, to]: [u32; 2]| {
         let [from, to] = mesh.positions_of([from, to]);
@@ -137,7 +139,9 @@ pub(super) fn links(
             sides.insert(ends, side);
         }
         // Rows run along the side that is nearer to the warp.
-        let class = LinkClass::of_family(family, coefficient, warp_cos2.max(1.0 - warp_cos2));
+        let warp_cos2 = warp_cos2.max(1.0 - warp_cos2);
+        let factor = variation.of_link(ends);
+        let class = LinkClass { factor, ..LinkClass::of_family(family, coefficient, warp_cos2) };
         links.push(Unlisted { ends, class, is_diagonal });
     }
     (links, sides)

@@ -16,6 +16,7 @@ use self::cell::Cell;
 use super::bending::Bending;
 use super::links::Links;
 use super::mesh::RestMesh;
+use super::regions::Variation;
 use super::remesh::Nodes;
 use super::rest_bends::RestBends;
 use super::topology::Edge;
@@ -32,23 +33,43 @@ pub(super) struct Net {
     pub corners: Vec<[u32; 4]>,
     pub bending: Bending,
     pub rest_bends: RestBends,
+    /// Area of all nodes, m².
+    pub area: f32,
+    pub variation: Variation,
 }
 
 impl Net {
-    /// The net of nodes, and the cells between them; none if two of their triangles face opposite ways, or where the sides of cells
-    /// don't make lines.
-    pub fn of(nodes: &Nodes) -> Option<(Self, Vec<Vec<u32>>)> {
+    /// The net of nodes, and the cells between them, given how the material varies between the nodes of cells; none if two of their
+    /// triangles face opposite ways, or where the sides of cells don't make lines.
+    pub fn of(
+        nodes: &Nodes,
+        vary: impl FnOnce(&RestMesh, Vec<Vec<u32>>) -> Variation,
+    ) -> Option<(Self, Vec<Vec<u32>>)> {
         let Nodes { edges, directions, .. } = nodes;
         let mut mesh = nodes.mesh.clone();
         let cells = cells::cells(&mesh, edges)?;
         let lines = lines::lines(&cells, &mesh.positions)?;
         mesh.set_areas(areas(&cells, &mesh.positions));
-        let (unlisted, sides) = links::links(&mesh, &cells, directions);
+        let area = mesh.areas.iter().sum();
+        let variation = vary(&mesh, cells.iter().map(|cell| cell.nodes.clone()).collect());
+        variation.weigh(&mut mesh);
+        let (unlisted, sides) = links::links(&mesh, &cells, directions, &variation);
         let (links, yarns) = links::listed(&mesh, &lines, unlisted, &sides);
-        let (bending, rest_bends) = bending::bending(&mesh, &cells, &lines, directions, &sides);
+        let (bending, rest_bends) =
+            bending::bending(&mesh, &cells, &lines, directions, (&sides, &variation));
         let quads = cells.iter().filter_map(|cell| <[u32; 4]>::try_from(&cell.nodes[..]).ok());
         let corners = quads.map(|[a, b, c, d]| [a, b, d, c]).collect();
-        let net = Self { corners, edges: edges.clone(), mesh, links, yarns, bending, rest_bends };
+        let net = Self {
+            corners,
+            edges: edges.clone(),
+            mesh,
+            links,
+            yarns,
+            bending,
+            rest_bends,
+            area,
+            variation,
+        };
         Some((net, cells.into_iter().map(|cell| cell.nodes).collect()))
     }
 }

@@ -78,6 +78,7 @@ impl FabricBuilder {
             pinned: pinned.map(|(vertex, _)| vertex).collect(),
             indices: fans.indices.clone(),
             merged: Some(fans.fan.clone()),
+            regions: self.regions_of(&fans.source),
             ..self
         }
     }
