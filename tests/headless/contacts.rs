@@ -4,8 +4,8 @@ use std::f32::consts::PI;
 
 use bevy_app::App;
 use bevy_bunting::{
-    ClothCollider, ClothFeatures, ClothLayers, ClothMaterial, ClothMesh, ClothParted,
-    ClothReactions, ClothTouched, ColliderError, SelfCollision,
+    ClothActivity, ClothCollider, ClothFeatures, ClothLayers, ClothMaterial, ClothMesh,
+    ClothParted, ClothReactions, ClothTouched, ColliderError, SelfCollision,
 };
 use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec3};

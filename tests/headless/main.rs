@@ -40,6 +40,7 @@ mod resolution;
 mod rest;
 mod saving;
 mod schedules;
+mod seams;
 mod skeleton_changes;
 mod skeletons;
 mod substep;

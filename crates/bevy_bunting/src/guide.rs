@@ -9,6 +9,9 @@ mod materials {}
 #[doc = include_str!("../../../docs/guide/anchors.md")]
 mod anchors {}
 
+#[doc = include_str!("../../../docs/guide/seams.md")]
+mod seams {}
+
 #[doc = include_str!("../../../docs/guide/skeletons.md")]
 mod skeletons {}
 

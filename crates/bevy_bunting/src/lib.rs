@@ -43,6 +43,7 @@
 //! | [`ClothPaused`] | a cloth | stops the simulation of the cloth |
 //! | [`ClothState`] | a cloth | positions and normals after the last tick, to be read |
 //! | [`ClothSurface`] | a cloth | positions and normals between two ticks, for display |
+//! | [`ClothSeams`] | a cloth | its edges that are sewn together |
 //! | [`ClothSkin`] | a cloth | the joints of a skeleton that lead it |
 //! | [`SkinLimits`] | a cloth | how far it may go from where its skeleton would have it |
 //! | [`WindInfluence`] | a cloth | the part of the wind that it feels |
@@ -86,7 +87,7 @@
 //!
 //! # Events
 //!
-//! [`ClothFailed`], [`ClothLevelChanged`] and [`ClothTargetLost`] are triggered on the cloth;
+//! [`ClothFailed`], [`ClothLevelChanged`], [`ClothTargetLost`], [`ClothSeamClosed`] and [`ClothSeamOpened`] are triggered on the cloth;
 //! [`TeleportCloth`], [`WakeCloth`], [`ClothImpulse`] and [`ShiftOrigin`] are triggered by the user. The system parameter [`ClothControl`]
 //! moves single particles between ticks; [`ClothSpatialQuery`] finds cloths by rays, points and shapes.
 //!
@@ -131,6 +132,7 @@ mod picking;
 mod render;
 mod save;
 mod schedule;
+mod seams;
 mod settings;
 mod skeleton;
 mod spatial;
@@ -250,6 +252,10 @@ pub use save::world::ClothWorldSnapshot;
 pub use schedule::{
     ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick, SchedulePlugin, run_cloth_tick,
 };
+pub use seams::error::SeamError;
+pub use seams::events::{ClothSeamClosed, ClothSeamOpened};
+pub use seams::plugin::SeamPlugin;
+pub use seams::seam::{ClothSeams, Seam, SeamRun};
 pub use settings::ClothSettings;
 pub use skeleton::by_vertex::ByVertex;
 pub use skeleton::limits::SkinLimits;
@@ -267,11 +273,12 @@ pub mod prelude {
         ClothFeatures, ClothGrab, ClothHit, ClothImpulse, ClothInertia, ClothLayers,
         ClothLevelChanged, ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins,
         ClothPreroll, ClothPressure, ClothReactions, ClothRegions, ClothResolution, ClothSaves,
-        ClothSeed, ClothSettings, ClothSkin, ClothSnapshot, ClothSpatialQuery, ClothState,
-        ClothSurface, ClothSystems, ClothTargetLost, ClothTick, ClothTouched, ClothWorldSnapshot,
-        GrabbedVertices, LodSet, LodViewer, SelfCollision, ShiftOrigin, SkinError, SkinLimits,
-        SnapshotError, TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan,
-        WindField, WindInfluence, WindPerParticle, WindRegion, WindShape, WindWake,
+        ClothSeamClosed, ClothSeamOpened, ClothSeams, ClothSeed, ClothSettings, ClothSkin,
+        ClothSnapshot, ClothSpatialQuery, ClothState, ClothSurface, ClothSystems, ClothTargetLost,
+        ClothTick, ClothTouched, ClothWorldSnapshot, GrabbedVertices, LodSet, LodViewer, Seam,
+        SeamError, SeamRun, SelfCollision, ShiftOrigin, SkinError, SkinLimits, SnapshotError,
+        TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan, WindField,
+        WindInfluence, WindPerParticle, WindRegion, WindShape, WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{
@@ -339,6 +346,7 @@ impl PluginGroup for ClothPlugins {
             .add(ColliderPlugin)
             .add(ReactionPlugin)
             .add(PressurePlugin)
+            .add(SeamPlugin)
             .add(SelfCollisionPlugin)
             .add(ClothCollisionPlugin)
             .add(SolverPlugin)

@@ -72,6 +72,7 @@ mod geometry;
 #[cfg(feature = "serde")]
 pub mod packed;
 mod pressure;
+mod seams;
 mod simd;
 mod stability;
 mod step;
@@ -95,6 +96,8 @@ pub use fabric::{
     Resolution,
 };
 pub use pressure::Pressure;
+pub use seams::plan::Seams;
+pub use seams::stitch::{Lacing, Stitch};
 pub use simd::level::{has_fused_products, instruction_set, with_every_instruction_set};
 pub use step::effort::Effort;
 pub use step::effort_class::{EffortCause, EffortClass};

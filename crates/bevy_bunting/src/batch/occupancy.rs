@@ -7,7 +7,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bunting_solver::{
     BatchError, ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, Guide, Hold,
-    LaneCount, LaneSurface, MovingPin, PinGroups, Pressure, SelfCollision,
+    Lacing, LaneCount, LaneSurface, MovingPin, PinGroups, Pressure, Seams, SelfCollision,
 };
 use parry3d::bounding_volume::Aabb;
 
@@ -239,6 +239,16 @@ impl LaneMut<'_> {
     /// A number cannot be, or the air of an open cloth would be sealed. The cloth keeps its air.
     pub fn set_pressure(&mut self, air: Option<Pressure>) -> Result<(), BatchError> {
         self.occupied.batch.set_pressure(self.lane, air)
+    }
+
+    /// Sews the cloth together, as far as lacings say. It stays as it is if they cannot be.
+    pub fn sew(&mut self, seams: &Arc<Seams>, lacings: Vec<Lacing>) {
+        let _ = self.occupied.batch.sew(self.lane, seams, lacings);
+    }
+
+    /// Opens all seams of the cloth.
+    pub fn unsew(&mut self) {
+        self.occupied.batch.unsew(self.lane).expect("an occupied lane");
     }
 
     /// Changes the material, which must be valid.

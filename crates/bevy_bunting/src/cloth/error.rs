@@ -5,6 +5,7 @@ use bevy_math::Vec3;
 use bunting_solver::{FabricError, RegionError};
 
 use crate::cloth::weights::WeightsError;
+use crate::seams::error::SeamError;
 use crate::skeleton::skin::SkinError;
 
 /// Reason why a cloth is not simulated or shown as asked, or why what should act on cloth does not; the message says what to
@@ -288,6 +289,16 @@ pub enum ClothError {
         entity: Entity,
         /// Area of the openings, as the length of the sum of all triangles' areas as vectors, m².
         area: f32,
+    },
+    /// A seam of [`ClothSeams`](crate::ClothSeams) cannot be sewn. It is open until its component changes; the other seams are sewn.
+    #[error("seam {seam} of cloth {entity} cannot be sewn: {source}")]
+    Seam {
+        /// The cloth.
+        entity: Entity,
+        /// Index of the seam.
+        seam: usize,
+        /// Defect of the seam.
+        source: SeamError,
     },
     /// The margin, the friction or a length of the shape of a [`ClothCollider`](crate::ClothCollider) cannot be. No cloth feels
     /// it until it changes.

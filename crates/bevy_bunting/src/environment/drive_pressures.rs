@@ -50,7 +50,7 @@ fn report_pressures(
 
 /// Gives each cloth in a lane its air, since a cloth that has entered a lane has none. `refused` are the fabrics of the cloths whose
 /// present air is refused, which is reported once.
-fn drive_pressures(
+pub(crate) fn drive_pressures(
     cloths: Query<(Entity, &ClothInstance, Ref<ClothPressure>)>,
     mut removed: RemovedComponents<ClothPressure>,
     instances: Query<&ClothInstance, Without<ClothPressure>>,

@@ -42,7 +42,7 @@ fn report_bad_thickness(cloths: Query<(Entity, &SelfCollision), Changed<SelfColl
 }
 
 /// Sets the distance of layers of each cloth in a lane, since a cloth that has entered a lane has none.
-pub(super) fn drive_self_collisions(
+pub(crate) fn drive_self_collisions(
     cloths: Query<(&ClothInstance, &SelfCollision)>,
     mut removed: RemovedComponents<SelfCollision>,
     instances: Query<&ClothInstance, Without<SelfCollision>>,

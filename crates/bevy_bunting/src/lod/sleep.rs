@@ -31,6 +31,7 @@ use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::pose::PoseHistory;
 use crate::motion::shift::ShiftOrigin;
 use crate::schedule::{ClothSystems, ClothTick};
+use crate::seams::seam::ClothSeams;
 use crate::settings::ClothSettings;
 use crate::skeleton::joints::JointPoses;
 
@@ -83,6 +84,7 @@ impl Plugin for SleepPlugin {
             .add_observer(wake_bared::<ClothAcceleration>)
             .add_observer(wake_bared::<ClothPressure>)
             .add_observer(wake_bared::<SelfCollision>)
+            .add_observer(wake_bared::<ClothSeams>)
             .add_observer(note_removed::<ClothCollider>)
             .add_observer(note_removed::<ClothCollision>);
         app.add_systems(
@@ -210,6 +212,7 @@ type HasNewExposure = Or<(
     Changed<WindPerParticle>,
     Changed<ClothAcceleration>,
     Changed<ClothPressure>,
+    Changed<ClothSeams>,
 )>;
 
 /// The components of a cloth on which the effect of its surroundings depends.
@@ -218,18 +221,20 @@ type Exposed = (
     Option<Ref<'static, WindPerParticle>>,
     Option<Ref<'static, ClothAcceleration>>,
     Option<Ref<'static, ClothPressure>>,
+    Option<Ref<'static, ClothSeams>>,
 );
 
 fn wake_exposed(
     mut cloths: Query<(&mut ClothInstance, &mut RestTimer, &PoseHistory, Exposed), HasNewExposure>,
 ) {
-    for (mut instance, mut timer, history, (influence, per_particle, acceleration, air)) in
+    for (mut instance, mut timer, history, (influence, per_particle, acceleration, air, seams)) in
         &mut cloths
     {
         let has_new = influence.is_some_and(|it| history.has_new(&it))
             || per_particle.is_some_and(|it| history.has_new(&it))
             || acceleration.is_some_and(|it| history.has_new(&it))
-            || air.is_some_and(|it| history.has_new(&it));
+            || air.is_some_and(|it| history.has_new(&it))
+            || seams.is_some_and(|it| history.has_new(&it));
         if has_new {
             timer.disturb();
             instance.wake();

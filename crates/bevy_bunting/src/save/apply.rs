@@ -27,6 +27,7 @@ use crate::motion::pose::PoseHistory;
 use crate::save::check::Fitting;
 use crate::save::cloth::{SavedCloth, SavedSkin};
 use crate::save::take::News;
+use crate::seams::sewn::SewnCloth;
 use crate::settings::ClothSettings;
 use crate::skeleton::check::led_by;
 use crate::skeleton::joints::JointPoses;
@@ -44,6 +45,9 @@ pub(super) fn apply(world: &mut World, fitting: &Fitting, saved: &SavedCloth) {
     restore_skin(world, fitting, saved, &now);
     restore_choices(world, fitting, saved);
     let mut cloth = world.entity_mut(entity);
+    if let Some(mut sewn) = cloth.get_mut::<SewnCloth>() {
+        sewn.progress.clone_from(&saved.seams);
+    }
     saved.surface.show(&mut cloth, &fitting.levels);
     let activity = cloth.get::<ClothInstance>().map(ClothInstance::published_activity);
     if let (Some(mut state), Some(activity)) = (cloth.get_mut::<ClothState>(), activity) {

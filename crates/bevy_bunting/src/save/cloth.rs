@@ -18,6 +18,7 @@ use crate::motion::observation_times::ObservationTimes;
 use crate::motion::pose::PoseHistory;
 use crate::motion::take_up::TakingUp;
 use crate::save::surface::SavedSurface;
+use crate::seams::sewn::SeamProgress;
 use crate::skeleton::joints::SavedJoint;
 
 /// The state of a cloth between two ticks: all that a tick reads and that is not in components of the user's. Restored to a
@@ -113,6 +114,8 @@ pub(crate) struct SavedCloth {
     /// One for each anchor.
     pub anchors: Vec<PoseHistory>,
     pub skin: Option<SavedSkin>,
+    /// One for each seam.
+    pub seams: Vec<SeamProgress>,
     pub reactions: Option<SavedReactions>,
     pub surface: SavedSurface,
 }

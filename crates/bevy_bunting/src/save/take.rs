@@ -33,6 +33,8 @@ use crate::motion::pose::PoseHistory;
 use crate::save::cloth::{SavedCloth, SavedReactions, SavedSkin};
 use crate::save::error::SnapshotError;
 use crate::save::surface::SavedSurface;
+use crate::seams::seam::ClothSeams;
+use crate::seams::sewn::SewnCloth;
 use crate::skeleton::joints::JointPoses;
 use crate::skeleton::particles::SkinnedParticles;
 
@@ -90,7 +92,8 @@ pub(super) fn take(world: &World, entity: Entity) -> Result<SavedCloth, Snapshot
     let is_exposed = news.has::<WindInfluence>(entity)
         || news.has::<WindPerParticle>(entity)
         || news.has::<ClothAcceleration>(entity)
-        || news.has::<ClothPressure>(entity);
+        || news.has::<ClothPressure>(entity)
+        || news.has::<ClothSeams>(entity);
     let wakes = is_exposed && instance.activity == ClothActivity::AtRest;
     let touches = match (&instance.restored, instance.lane()) {
         (Some(restored), _) => restored.touches,
@@ -128,6 +131,7 @@ pub(super) fn take(world: &World, entity: Entity) -> Result<SavedCloth, Snapshot
         frame: cloth.get::<PoseHistory>().cloned().unwrap_or_default(),
         anchors: anchors.into_iter().flat_map(AnchorPoses::histories).cloned().collect(),
         skin: skin(cloth),
+        seams: cloth.get::<SewnCloth>().map(|sewn| sewn.progress.clone()).unwrap_or_default(),
         reactions: cloth.get::<AnchorReactions>().map(|reactions| SavedReactions {
             target: reactions.target,
             anchors: reactions.anchors.clone(),

@@ -60,6 +60,20 @@ pub enum BatchError {
         /// Index of the particle.
         particle: u32,
     },
+    /// A stitch names a particle that the fabric does not have, sews a particle to itself, or its part is not within 0 to 1.
+    #[error(
+        "stitch {stitch} needs particles of the fabric, two different sides, and a part from 0 to 1"
+    )]
+    Stitch {
+        /// Index of the stitch in the given list.
+        stitch: usize,
+    },
+    /// A length or a time of a lacing is infinite or not a number, or negative.
+    #[error("the length or the time of lacing {lacing} is not finite, or negative")]
+    Lacing {
+        /// Index of the lacing in the given list.
+        lacing: usize,
+    },
     /// A number of a collider is infinite or not a number.
     #[error("the pose, margin or friction of collider {index} is not finite")]
     Collider {

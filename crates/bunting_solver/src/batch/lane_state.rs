@@ -11,6 +11,7 @@ use crate::contact::pressing::Pressing;
 use crate::contact::reaction::ReactionSum;
 use crate::fabric::{Fabric, FabricMaterial};
 use crate::pressure::LanePressure;
+use crate::seams::state::LaneSeams;
 use crate::stability::added_mass::AddedMass;
 use crate::stability::pin_strain::PinStrain;
 use crate::step::Drive;
@@ -52,6 +53,8 @@ pub(crate) struct LaneState {
     pub inner_air: Option<Box<LanePressure>>,
     /// Springs and rails that hold particles, if any do.
     pub holds: Option<Box<Holds>>,
+    /// What of the cloth is sewn together, if anything is.
+    pub seams: Option<Box<LaneSeams>>,
     /// What the cloth does to its pins, if that is asked for.
     pub pin_reports: Option<Box<PinReports>>,
     /// Velocities of the pins at the end of the last tick, m/s, of a restored cloth whose pins do not report yet.
@@ -84,6 +87,7 @@ impl LaneState {
             local_wind: None,
             inner_air: None,
             holds: None,
+            seams: None,
             pin_reports: None,
             pin_velocities: Vec::new(),
             inputs: None,

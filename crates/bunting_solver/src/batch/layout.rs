@@ -67,6 +67,11 @@ pub(crate) trait Layout<P: Pack>: Clone + Debug + Send + Sync + 'static {
     /// The pack and the lane of a particle of a cloth.
     fn locate(&self, particle: usize, cloth: usize) -> (usize, usize);
 
+    /// The particle in a lane at an index by which [`Particles`] access it in an order; none where the lane has none.
+    fn particle_at(&self, _order: Order, index: u32, _lane: usize) -> Option<u32> {
+        Some(index)
+    }
+
     /// Index in row-major order of the first particle of a pack, by which [`Particles`] access it.
     fn index_of_pack(&self, pack: usize) -> u32 {
         pack as u32

@@ -71,6 +71,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.exchange(&[], &[Entering { lane: 0, fabric, snapshot, material }]);
             let mut state = LaneState { inputs: None, added_mass: None, ..cloth.clone() };
             state.guides.iter_mut().for_each(ClothGuides::write_again);
+            state.seams.iter_mut().for_each(|seams| seams.forget_places());
             self.lanes[0] = Some(state);
         }
         self.clock = other.clock;

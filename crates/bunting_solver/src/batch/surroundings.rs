@@ -15,6 +15,9 @@ use crate::contact::itself::settings::SelfCollision;
 use crate::contact::points::ContactPoint;
 use crate::contact::reaction::ContactReaction;
 use crate::pressure::Pressure;
+use crate::seams::plan::Seams;
+use crate::seams::state::LaneSeams;
+use crate::seams::stitch::Lacing;
 use crate::step::{Drive, Guide, MovingPin};
 
 impl ClothBatch {
@@ -193,6 +196,57 @@ impl ClothBatch {
     pub fn hold_impulses(&self, lane: usize) -> &[Vec3] {
         let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref());
         cloth.and_then(|cloth| cloth.holds.as_ref()).map_or(&[], |holds| &holds.impulses)
+    }
+
+    /// Sews a lane's cloth together from the next tick on, as far as lacings say, until they are set again. Without lacings all stitches
+    /// are open. An empty lane stays empty.
+    ///
+    /// The two sides of a closed stitch have one place at the end of each substep, before contacts. Momentum and angular momentum stay
+    /// as they are. A cloth without pins falls, turns and hangs as one cloth of all its pieces.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane, the seams are those of a fabric with another number of particles, or a length or a time is not finite or
+    /// is negative. The lane keeps its former seams.
+    pub fn sew(
+        &mut self,
+        lane: usize,
+        seams: &Arc<Seams>,
+        lacings: Vec<Lacing>,
+    ) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        if seams.of_fabric != self.fabric().particle_count() {
+            return Err(BatchError::Fabric);
+        }
+        if let Some(lacing) = lacings.iter().position(|lacing| !lacing.is_valid()) {
+            return Err(BatchError::Lacing { lacing });
+        }
+        with_batch!(&mut self.0, batch => {
+            batch.resume_relaxation_of_seams(lane);
+            if let Some(cloth) = &mut batch.lanes[lane] {
+                match &mut cloth.seams {
+                    Some(known) if Arc::ptr_eq(&known.seams, seams) => known.lacings = lacings,
+                    known => *known = Some(Box::new(LaneSeams::new(Arc::clone(seams), lacings))),
+                }
+            }
+        });
+        Ok(())
+    }
+
+    /// Opens all seams of a lane's cloth.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane.
+    pub fn unsew(&mut self, lane: usize) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        with_batch!(&mut self.0, batch => {
+            batch.resume_relaxation_of_seams(lane);
+            if let Some(cloth) = &mut batch.lanes[lane] {
+                cloth.seams = None;
+            }
+        });
+        Ok(())
     }
 
     /// Sets the shapes that a lane's cloth cannot enter, from the next tick on. An empty lane stays empty.

@@ -50,11 +50,13 @@ impl<P: Pack, Y: Relaxed<P>> LaneBatch<P, Y> {
         }
         if self.clock.settings.scheme == Scheme::GaussSeidel {
             Y::solve_gauss_seidel(self);
+            self.close_seams();
             return;
         }
         for &stage in self.stages().iter().filter(|stage| **stage != Stage::Bending) {
             self.solve_stage(stage);
         }
+        self.close_seams();
         // This call copies the positions back from the constraints' arrays.
         self.positions.packs_mut();
         self.sum_reactions();

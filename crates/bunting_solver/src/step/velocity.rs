@@ -24,6 +24,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let has_chains = self.clock.settings.scheme == Scheme::Yarns;
         let turns = has_chains && self.numbers.pole.is_some();
         let mut turn = self.external_moments();
+        self.suspend_relaxation_of_seams();
         self.correct_velocities(turns, &mut turn);
         if turns {
             self.store_pole_turn(&turn);

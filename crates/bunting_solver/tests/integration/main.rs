@@ -22,6 +22,7 @@ mod pressure;
 mod regions;
 mod resampled;
 mod rest_on_edges;
+mod seams;
 mod self_contact;
 mod single_cloth;
 mod strain_limit;

@@ -7,7 +7,7 @@ use crate::gltf::components::insert_components;
 use crate::render::tests::reflect::public_types;
 
 /// Each public component as an artist may write it, with the fields that have no default; `{}` is a default.
-const COMPONENTS: [(&str, &str); 37] = [
+const COMPONENTS: [(&str, &str); 38] = [
     ("AnchorReactions", "{}"),
     (
         "Attachment",
@@ -40,6 +40,13 @@ const COMPONENTS: [(&str, &str); 37] = [
         r#"[{"shape": {"UvLine": {"from": [0, 0.3], "to": [1, 0.3], "width": 0.05}}, "bending": 1e4}]"#,
     ),
     ("ClothResolution", r#"{"CellSize": 0.03}"#),
+    (
+        "ClothSeams",
+        r#"{"seams": [
+            {"sides": [{"Edge": "Left"}, {"Edge": "Right"}], "closing": 1.0},
+            {"sides": [{"Vertices": [0, 8]}, {"Through": [[0, 0, 0], [1, 0, 0]]}], "length": 0.02}
+        ]}"#,
+    ),
     ("ClothSeed", "7"),
     ("ClothSkin", r#"{"joints": ["Post"]}"#),
     ("ClothSubdivision", "{}"),

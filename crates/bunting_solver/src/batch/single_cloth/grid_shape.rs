@@ -63,8 +63,16 @@ impl GridShape {
 
     /// The particle at an index in row-major order, if there is one.
     pub fn particle(&self, index: u32) -> Option<usize> {
+        self.particle_in(Order::RowMajor, index)
+    }
+
+    /// The particle at an index in an order, if there is one.
+    pub fn particle_in(&self, order: Order, index: u32) -> Option<usize> {
         let index = (index as usize).checked_sub(MARGIN)?;
-        let (row, column) = (index / self.row_stride, index % self.row_stride);
+        let (row, column) = match order {
+            Order::RowMajor => (index / self.row_stride, index % self.row_stride),
+            Order::ColumnMajor => (index % self.column_stride, index / self.column_stride),
+        };
         (row < self.rows && column < self.columns).then_some(row * self.columns + column)
     }
 }

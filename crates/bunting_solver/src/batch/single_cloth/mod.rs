@@ -192,6 +192,10 @@ impl<P: Pack> Layout<P> for SingleCloth<P> {
         GridShape::start_of_pack::<P>(pack)
     }
 
+    fn particle_at(&self, order: Order, index: u32, lane: usize) -> Option<u32> {
+        self.shape.particle_in(order, index + lane as u32).map(|particle| particle as u32)
+    }
+
     fn order_of_chains(&self, colour: usize) -> Order {
         self.chains.orders[colour]
     }

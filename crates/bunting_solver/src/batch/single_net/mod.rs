@@ -166,6 +166,11 @@ impl Layout<Pack8> for SingleNet {
         &self.chains.chains
     }
 
+    fn particle_at(&self, _: Order, index: u32, lane: usize) -> Option<u32> {
+        let node = self.nodes[index as usize][lane];
+        ((node as usize) < self.particles).then_some(node)
+    }
+
     fn order_of_chains(&self, _: usize) -> Order {
         Order::RowMajor
     }

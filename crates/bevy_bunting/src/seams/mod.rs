@@ -1,0 +1,12 @@
+//! Seams: edges of a cloth that are sewn to edges of the same cloth, for good or until they are opened.
+
+pub(crate) mod error;
+pub(crate) mod events;
+mod particles;
+pub(crate) mod plugin;
+mod run;
+pub(crate) mod seam;
+mod seam_stitches;
+mod sew;
+pub(crate) mod sewn;
+mod stitches;
