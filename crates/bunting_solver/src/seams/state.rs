@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::seams::link_place::LinkPlace;
-use crate::seams::plan::Seams;
+use crate::seams::plan::{Seams, Sewn};
 use crate::seams::stitch::Lacing;
 
 /// The seams of a cloth in its lane.
@@ -33,13 +33,31 @@ impl LaneSeams {
 
     /// The particles of all closed stitches.
     pub fn closed_particles(&self) -> impl Iterator<Item = u32> {
-        let Seams { stitches, particles, .. } = &*self.seams;
-        let of_lacing = |lacing: &Lacing| {
+        self.closed_stitches().flat_map(|stitch| self.particles_of(stitch))
+    }
+
+    /// The particles that closed stitches join, in both orders, ascending.
+    pub fn joined_particles(&self) -> Vec<[u32; 2]> {
+        let mut joined = Vec::new();
+        for stitch in self.closed_stitches() {
+            let mut onto = self.particles_of(stitch);
+            let Some(first) = onto.next() else { continue };
+            joined.extend(onto.flat_map(|other| [[first, other], [other, first]]));
+        }
+        joined.sort_unstable();
+        joined
+    }
+
+    fn closed_stitches(&self) -> impl Iterator<Item = &Sewn> {
+        let stitches = &self.seams.stitches;
+        self.lacings.iter().flat_map(|lacing| {
             let end = lacing.stitches.end.min(stitches.len());
             &stitches[lacing.stitches.start.min(end)..end]
-        };
-        let ends = self.lacings.iter().flat_map(of_lacing).flat_map(|stitch| &stitch.ends);
-        ends.map(|end| particles[end.at as usize])
+        })
+    }
+
+    fn particles_of(&self, stitch: &Sewn) -> impl Iterator<Item = u32> {
+        stitch.ends.iter().map(|end| self.seams.particles[end.at as usize])
     }
 
     /// Forgets where the targets of links are: the cloth gets another layout.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bunting_solver::{
     BatchError, ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, Grid,
-    Lacing, LaneCount, Resolution, Scheme, Seams, StepSettings, Stitch,
+    Lacing, LaneCount, Resolution, Scheme, Seams, SelfCollision, StepSettings, Stitch,
 };
 use glam::Vec3;
 
@@ -186,6 +186,20 @@ fn seams_hold_in_storms_and_a_tube_comes_to_rest() {
         let trembles = scheme.scheme == Scheme::GaussSeidel;
         assert!(gap < 0.1 && (rms < 2e-3 || trembles), "{figures}");
     }
+}
+
+#[test]
+fn layers_are_kept_apart_but_not_the_sides_of_a_seam() {
+    let fabric = panels(3);
+    let stitches = stitches(&fabric, 3);
+    let material = FabricMaterial { damping: 2.0, ..FabricMaterial::COTTON };
+    let mut batch = sewn(&fabric, material, &stitches, LaneCount::One);
+    let layers = SelfCollision { thickness: 5e-3 };
+    batch.set_self_collision(0, Some(layers)).expect("a good thickness");
+    (0..600).for_each(|_| batch.step(TICK, StepSettings::default()));
+    let gap = greatest_gap(&positions(&batch), &stitches) / LINK;
+    let rms = speed(&batch);
+    assert!(gap < 0.01 && rms < 2e-3, "{gap} links, {rms} m/s");
 }
 
 #[test]

@@ -107,6 +107,7 @@ impl ClothGroup {
                 range: first..first + count,
                 own_thickness: None,
                 friction: 0.0,
+                sewn: Vec::new(),
                 fabric: shape.fabric,
                 moves: false,
                 is_finite: settings.is_valid(),
@@ -172,7 +173,8 @@ impl ClothGroup {
             step = step.max(of_member);
         }
         let Self { members, mesh, of_patch, of_particle, layers, .. } = self;
-        let rules = OfGroup { members, of_patch, of_particle };
+        let sewn: Vec<[u32; 2]> = members.iter().flat_map(Member::sewn_of_group).collect();
+        let rules = OfGroup { members, of_patch, of_particle, sewn: &sewn };
         let thickness = rules.greatest_thickness();
         layers.particles.touched.fill(false);
         let rounds = Rounds { mesh, rules: &rules, thickness, step, sweeps: SWEEPS };

@@ -43,6 +43,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if let Some(state) = &mut self.lanes[cloth] {
             state.is_grouped = true;
             member.friction = state.material.surface_friction;
+            member.sewn =
+                state.seams.as_ref().map_or_else(Vec::new, |seams| seams.joined_particles());
             let own = state.self_contacts.as_mut();
             member.own_thickness = own.map(|contacts| {
                 contacts.layers.forget();

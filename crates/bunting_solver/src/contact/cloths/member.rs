@@ -67,6 +67,8 @@ pub(crate) struct Member {
     pub own_thickness: Option<f32>,
     /// Coulomb friction coefficient.
     pub friction: f32,
+    /// Its own particles that seams join, in both orders, ascending.
+    pub sewn: Vec<[u32; 2]>,
     pub fabric: Arc<Fabric>,
     /// Whether the cloth moves in this substep. One that does not is held.
     pub moves: bool,
@@ -76,6 +78,12 @@ pub(crate) struct Member {
 }
 
 impl Member {
+    /// The particles that seams join, among those of the group.
+    pub fn sewn_of_group(&self) -> impl Iterator<Item = [u32; 2]> {
+        let first = self.range.start as u32;
+        self.sewn.iter().map(move |pair| pair.map(|particle| particle + first))
+    }
+
     /// Sets the pose after a part of the tick.
     pub fn set_pose(&mut self, part: f32, origin: Vec3) {
         self.pose = self.settings.pose(part, origin);

@@ -12,6 +12,8 @@ pub(super) struct OfGroup<'a> {
     pub of_patch: &'a [u32],
     /// Index of each particle's cloth.
     pub of_particle: &'a [u32],
+    /// See [`Rules::sewn`].
+    pub sewn: &'a [[u32; 2]],
 }
 
 impl OfGroup<'_> {
@@ -56,5 +58,9 @@ impl Rules for OfGroup<'_> {
             friction: first.friction,
             rest: Some(particles.map(|at| rest[at as usize - first.range.start])),
         }
+    }
+
+    fn sewn(&self) -> &[[u32; 2]] {
+        self.sewn
     }
 }

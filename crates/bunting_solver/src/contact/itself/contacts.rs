@@ -39,6 +39,7 @@ impl LayerContacts {
         let cloth = Cloth { mesh, particles, thickness };
         if !search.is_good(cloth) {
             search.find(cloth, rules, pairs);
+            pairs.drop_sewn(rules.sewn());
             drop_distant(pairs, particles, thickness);
         }
         if pairs.is_empty() {
@@ -106,6 +107,7 @@ impl LayerContacts {
         let Self { search, pairs, particles, tangles, .. } = self;
         particles.touched.fill(false);
         search.find_moved(Cloth { mesh, particles, thickness }, rules, pairs);
+        pairs.drop_sewn(rules.sewn());
         let mut zones = RigidZones::new(particles);
         let mut grew = false;
         while zones.grow(pairs, tangles, particles) {
@@ -113,6 +115,7 @@ impl LayerContacts {
             if !search.find_moved(Cloth { mesh, particles, thickness }, rules, pairs) {
                 break;
             }
+            pairs.drop_sewn(rules.sewn());
         }
         particles.is_near.clone_from(&particles.touched);
         (grew && !zones.are_given_up()).then_some(zones)

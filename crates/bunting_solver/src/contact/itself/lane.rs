@@ -58,7 +58,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         let fabric = Arc::clone(&self.fabric_of(cloth).fabric);
         let friction = state.material.surface_friction;
-        let rules = OfOneCloth { thickness: *thickness, friction, rest: fabric.rest_positions() };
+        let sewn = state.seams.as_ref().map_or_else(Vec::new, |seams| seams.joined_particles());
+        let rules = OfOneCloth {
+            thickness: *thickness,
+            friction,
+            rest: fabric.rest_positions(),
+            sewn: &sewn,
+        };
         let rounds = Rounds {
             mesh,
             rules: &rules,

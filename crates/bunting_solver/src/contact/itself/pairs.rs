@@ -45,6 +45,20 @@ impl Pairs {
         fours.chain(fives).map(|particle| particle as usize)
     }
 
+    /// Drops the pairs of features that seams join, given the particles that they join, in both orders, ascending.
+    pub fn drop_sewn(&mut self, sewn: &[[u32; 2]]) {
+        if sewn.is_empty() {
+            return;
+        }
+        let are_joined = |one: &[u32], other: &[u32]| {
+            let is_joined = |at: u32| other.iter().any(|&to| sewn.binary_search(&[at, to]).is_ok());
+            one.iter().any(|&at| is_joined(at))
+        };
+        self.particles_triangles.retain(|pair| !are_joined(&pair[..1], &pair[1..]));
+        self.edges_edges.retain(|pair| !are_joined(&pair[..2], &pair[2..]));
+        self.edges_triangles.retain(|pair| !are_joined(&pair.edge, &pair.triangle));
+    }
+
     pub fn clear(&mut self) {
         self.particles_triangles.clear();
         self.edges_edges.clear();

@@ -19,6 +19,9 @@ pub(in crate::contact) trait Rules {
 
     /// How the features of a contact are kept apart, given its particles.
     fn keep(&self, particles: [u32; 4]) -> Keep;
+
+    /// Particles that seams join, in both orders, ascending. Features with such particles touch each other as neighbours do.
+    fn sewn(&self) -> &[[u32; 2]];
 }
 
 /// The rules of a cloth by itself.
@@ -29,6 +32,8 @@ pub(in crate::contact) struct OfOneCloth<'a> {
     pub friction: f32,
     /// Positions at rest, m.
     pub rest: &'a [Vec3],
+    /// See [`Rules::sewn`].
+    pub sewn: &'a [[u32; 2]],
 }
 
 impl Rules for OfOneCloth<'_> {
@@ -44,5 +49,9 @@ impl Rules for OfOneCloth<'_> {
             friction: self.friction,
             rest: Some(particles.map(|particle| self.rest[particle as usize])),
         }
+    }
+
+    fn sewn(&self) -> &[[u32; 2]] {
+        self.sewn
     }
 }
