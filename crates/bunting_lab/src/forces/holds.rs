@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use bevy_bunting::WakeCloth;
 use bevy_bunting::prelude::*;
 use bevy_transform::components::Transform;
 use glam::Vec3;
@@ -53,7 +54,11 @@ fn edge_after(
     app.update();
     let ticks = libm::roundf(seconds / TICK) as usize;
     let start = Instant::now();
-    (0..ticks).for_each(|_| app.update());
+    for _ in 0..ticks {
+        // What is left of the motion when cloth falls asleep is more than what is measured here.
+        app.world_mut().trigger(WakeCloth { entity: sheet });
+        app.update();
+    }
     let us = 1e6 * start.elapsed().as_secs_f64() / ticks as f64;
     (edge(&app), pose.rotation * Vec3::new(0.5, 0.0, 0.0), us)
 }
