@@ -5,6 +5,7 @@
 //! of it.
 
 mod coverage;
+mod factors;
 mod ground;
 mod kites;
 mod region;

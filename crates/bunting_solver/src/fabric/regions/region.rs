@@ -2,6 +2,7 @@
 
 use glam::Vec2;
 
+use super::factors;
 use super::region_error::RegionError;
 
 /// Number of values of a curve of depth that is given as a function. Fewer: steep curves are flattened. More: equal curves
@@ -92,10 +93,10 @@ fn one() -> f32 {
 
 impl MaterialRegion {
     /// Least factor but for a bending of 0. Smaller: single particles swing so fast that they dominate the cloth's substeps.
-    pub const LEAST_FACTOR: f32 = 1e-3;
+    pub const LEAST_FACTOR: f32 = factors::LEAST;
 
     /// Greatest factor. Larger: beside it the rest of the cloth is rounding.
-    pub const GREATEST_FACTOR: f32 = 1e6;
+    pub const GREATEST_FACTOR: f32 = factors::GREATEST;
 
     /// A region with a shape, in which the material does not differ yet.
     #[must_use]

@@ -7,8 +7,8 @@ pub enum RegionError {
     /// A factor is too small, too large or not a number.
     #[error(
         "its factor {name} is {value}: give one from {least} to {most}, or 0 to a bending that is to vanish",
-        least = crate::MaterialRegion::LEAST_FACTOR,
-        most = crate::MaterialRegion::GREATEST_FACTOR
+        least = super::factors::LEAST,
+        most = super::factors::GREATEST
     )]
     Factor {
         /// The field's name.
