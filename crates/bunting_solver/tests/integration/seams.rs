@@ -94,7 +94,7 @@ fn almost_at_rest(fabric: &Arc<Fabric>) -> ClothSnapshot {
     let mut state = ClothSnapshot::at_rest(fabric);
     for (particle, at) in state.positions.iter_mut().enumerate() {
         if !fabric.is_pinned(particle) {
-            at.z += 1e-4 * (37.0 * at.x).sin() * (23.0 * at.y).cos();
+            at.z += 1e-4 * libm::sinf(37.0 * at.x) * libm::cosf(23.0 * at.y);
         }
     }
     state
