@@ -255,7 +255,8 @@ pub use schedule::{
 pub use seams::error::SeamError;
 pub use seams::events::{ClothSeamClosed, ClothSeamOpened};
 pub use seams::plugin::SeamPlugin;
-pub use seams::seam::{ClothSeams, Seam, SeamRun};
+pub use seams::run::SeamRun;
+pub use seams::seam::{ClothSeams, Seam};
 pub use settings::ClothSettings;
 pub use skeleton::by_vertex::ByVertex;
 pub use skeleton::limits::SkinLimits;

@@ -100,7 +100,7 @@ pub(crate) fn hold_cloths(
             if !grab.is_valid() || !pose.is_observed() {
                 continue;
             }
-            timer.disturb();
+            timer.restart();
             let pose = (pose.start(), pose.end());
             let is_new = grabbed.is_new();
             if is_new || !grabbed.fits(levels, instance.level) {

@@ -132,7 +132,7 @@ fn group_cloths(
         let found = awake.binary_search_by_key(&cloth.entity, |awake| awake.entity);
         cloth.timer.group = found.ok().map(|at| awake[awake[at].group].entity);
         if cloth.instance.activity == ClothActivity::AtRest && cloth.is_disturbed(&awake) {
-            cloth.timer.disturb();
+            cloth.timer.restart();
             cloth.instance.wake();
         }
     }

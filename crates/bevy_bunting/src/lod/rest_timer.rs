@@ -30,15 +30,15 @@ impl RestTimer {
             self.ticks += 1;
             return;
         }
-        self.disturb();
+        self.restart();
         // Cloth that moves farther in a tick does not come to rest in the next one.
         if distance(previous, positions) <= way {
             self.places.extend_from_slice(positions);
         }
     }
 
-    /// Notes that something disturbs the cloth.
-    pub fn disturb(&mut self) {
+    /// Counts from zero again: something acts on the cloth, or it has fallen asleep.
+    pub fn restart(&mut self) {
         self.ticks = 0;
         self.places.clear();
     }
@@ -100,12 +100,12 @@ mod tests {
     }
 
     #[test]
-    fn a_disturbance_ends_the_rest() {
+    fn a_restart_ends_the_rest() {
         let mut timer = RestTimer::default();
         let at = [Vec3::ZERO];
         (0..9).for_each(|_| timer.count(&at, &at, WAY));
         assert_eq!(timer.ticks, 8);
-        timer.disturb();
+        timer.restart();
         timer.count(&at, &at, WAY);
         assert_eq!(timer.ticks, 0);
     }

@@ -35,13 +35,12 @@ use crate::seams::seam::ClothSeams;
 use crate::settings::ClothSettings;
 use crate::skeleton::joints::JointPoses;
 
-/// Root mean square distance from a place, as a part of the cloth's size, within which a cloth rests: it is invisible. Of
-/// cloths larger than a metre as a part of a metre. Larger: cloth visibly stops. Smaller: heaps of cloth, whose folds tremble,
-/// do not fall asleep.
+/// Root mean square distance of a cloth's particles from where they were, as a part of the cloth's size, up to which the cloth rests:
+/// too small to be seen. Larger: cloth visibly stops. Smaller: heaps of cloth, whose folds tremble, do not fall asleep.
 const REST_PART: f32 = 1e-3;
 
-/// Size from which on the distance does not grow, m.
-const LARGEST: f32 = 1.0;
+/// Greatest size of which that part is taken, m: larger cloths rest within the same distance as one of this size.
+const LARGEST_SIZE: f32 = 1.0;
 
 /// Time for which a cloth must rest before it falls asleep, s: longer than a pendulum is within that distance at its turning
 /// points. Shorter: swinging cloth falls asleep there.
@@ -190,7 +189,7 @@ fn shift_changes(shift: On<ShiftOrigin>, mut changes: ResMut<Changes>) {
 
 fn wake(request: On<WakeCloth>, mut cloths: Query<(&mut ClothInstance, &mut RestTimer)>) {
     if let Ok((mut instance, mut timer)) = cloths.get_mut(request.entity) {
-        timer.disturb();
+        timer.restart();
         instance.wake();
     }
 }
@@ -201,7 +200,7 @@ fn wake_bared<C: Component>(
     mut cloths: Query<(&mut ClothInstance, &mut RestTimer)>,
 ) {
     if let Ok((mut instance, mut timer)) = cloths.get_mut(removed.entity) {
-        timer.disturb();
+        timer.restart();
         instance.wake();
     }
 }
@@ -236,7 +235,7 @@ fn wake_exposed(
             || air.is_some_and(|it| history.has_new(&it))
             || seams.is_some_and(|it| history.has_new(&it));
         if has_new {
-            timer.disturb();
+            timer.restart();
             instance.wake();
         }
     }
@@ -361,9 +360,9 @@ pub(crate) fn send_to_sleep(
             || instance.taking_up.is_some();
         timer.pose = Some(pose);
         if is_disturbed {
-            timer.disturb();
+            timer.restart();
         } else {
-            let largest = LARGEST / state.scale();
+            let largest = LARGEST_SIZE / state.scale();
             let way = REST_PART * (2.0 * record.radius).min(largest);
             timer.count(state.positions(), state.previous_positions(), way);
         }
@@ -371,7 +370,7 @@ pub(crate) fn send_to_sleep(
         match timer.group {
             Some(group) => *rested.entry(group).or_insert(true) &= rests,
             None if rests => {
-                timer.disturb();
+                timer.restart();
                 instance.activity = ClothActivity::AtRest;
                 changes.asleep += 1;
             }
@@ -382,7 +381,7 @@ pub(crate) fn send_to_sleep(
         for (mut instance, .., mut timer, _) in &mut cloths {
             let rests = |group: Entity| instance.lane().is_some() && rested[&group];
             if timer.group.is_some_and(rests) {
-                timer.disturb();
+                timer.restart();
                 instance.activity = ClothActivity::AtRest;
                 changes.asleep += 1;
             }

@@ -4,7 +4,7 @@ pub(crate) mod error;
 pub(crate) mod events;
 mod particles;
 pub(crate) mod plugin;
-mod run;
+pub(crate) mod run;
 pub(crate) mod seam;
 mod seam_stitches;
 mod sew;

@@ -1,12 +1,12 @@
 //! The component of a cloth that is sewn together.
 
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
 use crate::motion::attached_vertices::ClothEdge;
 use crate::seams::error::SeamError;
+use crate::seams::run::SeamRun;
 use crate::seams::sewn::SewnCloth;
 
 /// Edges of a cloth that are sewn to edges of the same cloth: a sheet becomes a tube, and flat panels that are pieces of one
@@ -138,41 +138,5 @@ impl Seam {
             Some((name, value, _)) => Err(SeamError::Number { name, value }),
             None => Ok(()),
         }
-    }
-}
-
-/// One side of a [`Seam`]: a way along a cloth from its beginning to its end.
-///
-/// ```
-/// use bevy_bunting::prelude::*;
-/// use bevy_math::Vec3;
-///
-/// // The left edge of a panel at x = 1 m in the mesh's frame, from the top to the hem.
-/// let side = SeamRun::Through(vec![Vec3::X, Vec3::new(1.0, -0.5, 0.0)]);
-/// # assert_ne!(side, SeamRun::Edge(ClothEdge::Left));
-/// ```
-#[derive(Clone, Debug, PartialEq, Reflect)]
-#[type_path = "bevy_bunting"]
-#[reflect(Debug, PartialEq, Clone)]
-pub enum SeamRun {
-    /// An edge by texture coordinates: from the left to the right, or from the top to the bottom. It lies in one piece of the cloth.
-    Edge(ClothEdge),
-    /// Straight from vertex to vertex of the [`ClothMesh`](crate::ClothMesh) at rest, in this order: the two ends of a straight edge, or
-    /// all vertices along a curved one.
-    Vertices(Vec<u32>),
-    /// Straight from place to place at rest, m, in the mesh's own frame, each moved to the vertex that is nearest.
-    Through(Vec<Vec3>),
-}
-
-impl From<ClothEdge> for SeamRun {
-    fn from(edge: ClothEdge) -> Self {
-        Self::Edge(edge)
-    }
-}
-
-impl From<Vec<u32>> for SeamRun {
-    /// Straight from vertex to vertex.
-    fn from(vertices: Vec<u32>) -> Self {
-        Self::Vertices(vertices)
     }
 }

@@ -48,8 +48,10 @@ pub(crate) fn sew_cloths(
     let tick = time.delta_secs();
     for (entity, instance, mesh, seams, mut sewn, mut timer) in &mut cloths {
         let (Some(lane), Some(levels)) = (instance.lane(), &instance.levels) else { continue };
-        let is_changed = seams.is_changed() || mesh.is_changed();
-        if is_changed || !sewn.fits(levels, instance.level) {
+        if mesh.is_changed() || !sewn.fits(levels, instance.level) {
+            sewn.known = None;
+        }
+        if seams.is_changed() || sewn.known.is_none() {
             sewn.find_stitches(&seams.seams, &mesh, levels, instance.level, |seam, source| {
                 let error = ClothError::Seam { entity, seam, source };
                 ClothFailed::report(&mut commands, entity, error);
@@ -64,13 +66,17 @@ pub(crate) fn sew_cloths(
             let end = first + stitches.stitches.len();
             if !stitches.stitches.is_empty() {
                 match progress.advance(seam, tick) {
-                    Some(Told::Closed) => commands.trigger(ClothSeamClosed { entity, seam: index }),
-                    Some(Told::Opened) => commands.trigger(ClothSeamOpened { entity, seam: index }),
+                    Some(SeamChange::Closed) => {
+                        commands.trigger(ClothSeamClosed { entity, seam: index })
+                    }
+                    Some(SeamChange::Opened) => {
+                        commands.trigger(ClothSeamOpened { entity, seam: index })
+                    }
                     None => {}
                 }
                 let closing = progress.closing;
                 if closing > 0.0 {
-                    timer.disturb();
+                    timer.restart();
                 }
                 lacings.push(Lacing {
                     stitches: stitches.closed(first, seam.closed),
@@ -85,28 +91,28 @@ pub(crate) fn sew_cloths(
     }
 }
 
-/// What a seam has become.
-enum Told {
+/// What has happened to a seam in a tick.
+enum SeamChange {
     Closed,
     Opened,
 }
 
 impl SeamProgress {
-    /// Takes over how far a seam is closed in a tick (s), and returns what it has become if nobody was told.
-    fn advance(&mut self, seam: &Seam, tick: f32) -> Option<Told> {
+    /// Takes over how far a seam is closed in a tick (s), and returns what has happened to it.
+    fn advance(&mut self, seam: &Seam, tick: f32) -> Option<SeamChange> {
         let was_open = self.closed == 0.0;
         self.closed = seam.closed;
         if seam.closed == 0.0 {
             *self = Self::default();
-            return (!was_open).then_some(Told::Opened);
+            return (!was_open).then_some(SeamChange::Opened);
         }
         if was_open {
             self.closing = seam.closing;
         }
         let is_closed = seam.closed >= 1.0 && self.closing <= tick;
-        let is_new = is_closed && !self.is_told;
-        self.is_told = is_closed;
-        is_new.then_some(Told::Closed)
+        let is_new = is_closed && !self.is_reported;
+        self.is_reported = is_closed;
+        is_new.then_some(SeamChange::Closed)
     }
 }
 
@@ -116,7 +122,17 @@ impl SewnCloth {
         self.known.as_ref().is_some_and(|known| known.of.is(levels, level))
     }
 
-    /// Finds the stitches of seams at a level, if they are others than before. Defects are reported with the index of the seam.
+    /// The stitches of a seam, given its index, if it has any and its sides are as before.
+    fn kept(&self, index: usize, seam: &Seam) -> Option<&SeamStitches> {
+        let known = self.known.as_ref()?;
+        let (sides, reversed) = known.sides.get(index)?;
+        let stitches = &known.of_seams[index];
+        let is_same = *sides == seam.sides && *reversed == seam.reversed;
+        (is_same && !stitches.stitches.is_empty()).then_some(stitches)
+    }
+
+    /// Finds the stitches of seams at a level. A seam whose sides are as before keeps its stitches: a slider that moves in each frame
+    /// costs no search. Defects are reported with the index of the seam.
     fn find_stitches(
         &mut self,
         seams: &[Seam],
@@ -127,22 +143,27 @@ impl SewnCloth {
     ) {
         let mut of_seams = Vec::with_capacity(seams.len());
         for (index, seam) in seams.iter().enumerate() {
-            let found = seam.check_numbers().and_then(|()| stitches_of(seam, mesh, levels, level));
+            let found = seam.check_numbers().and_then(|()| match self.kept(index, seam) {
+                Some(kept) => Ok(kept.clone()),
+                None => stitches_of(seam, mesh, levels, level),
+            });
             of_seams.push(found.unwrap_or_else(|error| {
                 report(index, error);
                 SeamStitches::default()
             }));
         }
         let all: Vec<_> = of_seams.iter().flat_map(|it| it.stitches.iter().copied()).collect();
-        let known = self.known.as_ref().filter(|known| {
-            known.of.is(levels, level) && known.of_seams.iter().flat_map(|it| &it.stitches).eq(&all)
-        });
+        let is_same =
+            |known: &&KnownStitches| known.of_seams.iter().flat_map(|it| &it.stitches).eq(&all);
+        let known = self.known.as_ref().filter(is_same);
+        let sides = seams.iter().map(|seam| (seam.sides.clone(), seam.reversed)).collect();
         let seams = match known {
             Some(known) => Some(Arc::clone(&known.seams)),
             None => Seams::new(levels.fabric(level), &all).ok().map(Arc::new),
         };
         self.known = seams.map(|seams| KnownStitches {
             of: KnownLevel::new(levels, level),
+            sides,
             of_seams,
             seams,
         });

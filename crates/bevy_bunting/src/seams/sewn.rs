@@ -6,6 +6,7 @@ use bevy_ecs::prelude::*;
 use bunting_solver::Seams;
 
 use crate::fabric::known_level::KnownLevel;
+use crate::seams::run::SeamRun;
 use crate::seams::seam_stitches::SeamStitches;
 
 /// The stitches of a cloth's seams at its level, and how far they are.
@@ -20,7 +21,9 @@ pub(crate) struct SewnCloth {
 #[derive(Clone, Debug)]
 pub(super) struct KnownStitches {
     pub of: KnownLevel,
-    /// Those of each seam; none of one that cannot be sewn.
+    /// The sides of each seam, and whether the second one is reversed.
+    pub sides: Vec<([SeamRun; 2], bool)>,
+    /// The stitches of each seam; none of one that cannot be sewn.
     pub of_seams: Vec<SeamStitches>,
     pub seams: Arc<Seams>,
 }
@@ -33,6 +36,6 @@ pub(crate) struct SeamProgress {
     pub closed: f32,
     /// Time that is left until it is drawn together, s.
     pub closing: f32,
-    /// Whether it was told that it is closed all along.
-    pub is_told: bool,
+    /// Whether its closing all along has been reported.
+    pub is_reported: bool,
 }

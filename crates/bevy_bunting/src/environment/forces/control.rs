@@ -108,7 +108,7 @@ impl ClothControl<'_, '_> {
         };
         let result = edit(&mut cloth)?;
         instance.set_state(cloth.state, &mut self.batches);
-        timer.disturb();
+        timer.restart();
         Ok(result)
     }
 }

@@ -149,7 +149,7 @@ pub(super) fn apply_impulses(
             cloth.push(&mut state, change);
             if state.is_finite() {
                 instance.set_state(state, &mut batches);
-                timer.disturb();
+                timer.restart();
             } else {
                 ClothFailed::report(&mut commands, entity, ClothError::Impulse { entity });
             }
