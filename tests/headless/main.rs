@@ -33,6 +33,7 @@ mod pauses;
 mod places;
 mod points;
 mod pressure;
+mod properties;
 mod reactions;
 mod reading;
 mod regions;

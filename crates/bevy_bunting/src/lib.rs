@@ -110,6 +110,8 @@
 //! [`ClothSettings::share_batches`] is off, and in its level with [`LodSet::automatic`], which shares a budget among all
 //! cloths and by default measures their costs; with [`LodCosts::Fixed`] its choice, too, is the same on every machine.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod anchors;
 mod background;
 mod batch;
@@ -128,6 +130,9 @@ mod lod;
 mod motion;
 #[cfg(feature = "picking")]
 mod picking;
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
 #[cfg(feature = "render")]
 mod render;
 mod save;

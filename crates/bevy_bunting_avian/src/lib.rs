@@ -60,6 +60,9 @@ mod guide {}
 mod layers;
 mod plugin;
 mod push;
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
 mod shape;
 
 pub use error::{ClothColliderError, ClothColliderFailed};

@@ -14,12 +14,17 @@
 //!
 //! With the feature `window` (default) the panel is drawn by Bevy's renderer. Without it the crate needs no renderer.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/guide/tuning.md")]
 mod guide {}
 mod panel;
 mod parameters;
 mod presets;
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
 mod selection;
 mod strain;
 mod tuning;

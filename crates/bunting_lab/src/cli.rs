@@ -7,7 +7,7 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::{
     budget, contacts, effort, families, files, forces, fuzz, gate, lod, memory, nets, oracles,
-    pareto, report, schedule, sharing, stability,
+    pareto, report, schedule, sharing, soak, stability,
 };
 use crate::output::Outcome;
 
@@ -64,6 +64,8 @@ enum Command {
     Schedule,
     /// Flags that need different substeps, in batches that they share.
     Sharing,
+    /// Scenes that run for long: memory, times and motion at the end beside those at the start.
+    Soak(soak::Options),
     /// Other engines on the same scenes.
     Peers,
     /// Hashes, closed forms and quick hard cases against the committed lists; exits with 1 where they differ.
@@ -85,6 +87,7 @@ impl Arguments {
             Command::Peers => peers(self.quick)?,
             Command::Schedule => schedule::run(self.quick),
             Command::Sharing => sharing::run(self.quick),
+            Command::Soak(options) => soak::run(&options, self.quick)?,
             Command::Budget => budget::run(self.quick),
             Command::Effort => effort::run(self.quick),
             Command::Contacts(selection) => contacts::run(&selection, self.quick)?,

@@ -16,6 +16,13 @@ pub fn allocations_of(work: impl FnOnce()) -> usize {
     change.allocations + change.reallocations
 }
 
+/// Bytes that the program holds on the heap.
+#[must_use]
+pub fn in_use() -> usize {
+    let stats = ALLOCATOR.stats();
+    stats.bytes_allocated.saturating_sub(stats.bytes_deallocated)
+}
+
 /// Returns the value made by `make`, and the bytes that the value holds on the heap: those allocated and not
 /// freed meanwhile. Other threads must not allocate at that time.
 pub fn held_by<Value>(make: impl FnOnce() -> Value) -> (Value, usize) {

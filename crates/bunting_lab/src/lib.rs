@@ -35,6 +35,7 @@ pub mod report;
 pub mod scenes;
 pub mod settings;
 pub mod simulation;
+pub mod soak;
 pub mod specimen;
 pub mod stability;
 pub mod stats;

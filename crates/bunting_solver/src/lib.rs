@@ -60,6 +60,7 @@
 //! The bits of a cloth's state depend on its own history only: not on the other cloths of the batch, nor on the
 //! width, the instruction set or the thread.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 mod anchors;
@@ -72,6 +73,9 @@ mod geometry;
 #[cfg(feature = "serde")]
 pub mod packed;
 mod pressure;
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
 mod seams;
 mod simd;
 mod stability;

@@ -142,7 +142,9 @@ impl Governor {
             for to in (wanted..coarsest).rev() {
                 let factor = if cloth.level <= to { PRESENT_LEVEL_FACTOR } else { 1.0 };
                 let step = self.step_values[self.first_values[cloth.table as usize] + to as usize];
-                let value = (value_of_metre * step * factor).clamp(0.0, f32::MAX);
+                let value = value_of_metre * step * factor;
+                // No error is reduced, but a metre is worth more than any number: that is no number.
+                let value = if value > 0.0 { value.min(f32::MAX) } else { 0.0 };
                 let bucket = BUCKETS as u32 - 1 - (value.to_bits() >> BUCKET_SHIFT);
                 self.steps.push(Step { cloth: index as u32, to, bucket });
             }

@@ -61,6 +61,15 @@ fn with_time_to_spare_each_cloth_has_its_wanted_level() {
 }
 
 #[test]
+fn a_step_without_gain_has_no_worth_however_near_the_cloth() {
+    let LevelTable { costs, owners, .. } = table();
+    let alike = LevelTable { errors: vec![0.01; 4], costs, owners };
+    let endless = Candidate { importance: f32::INFINITY, ..cloth(3, 1e9) };
+    let choice = Governor::default().choose(&[alike], &[endless], &LIMITS).clone();
+    assert_eq!(choice.switches, [(0, 0)]);
+}
+
+#[test]
 fn between_the_thresholds_nothing_changes() {
     // The second level has 0.75 px, the third 1.5.
     for level in [1, 2] {

@@ -23,6 +23,7 @@ pub mod peers;
 pub mod report;
 pub mod schedule;
 pub mod sharing;
+pub mod soak;
 pub mod stability;
 
 use indicatif::{ProgressBar, ProgressStyle};

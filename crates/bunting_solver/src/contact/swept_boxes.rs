@@ -30,7 +30,8 @@ pub(super) struct Sweep {
     pub dragged: f32,
 }
 
-/// Least and greatest coordinates of eight boxes, axis by axis, m. A box that is missing meets no other.
+/// Least and greatest coordinates of eight boxes, axis by axis, m. A box that is missing has no numbers and meets no other, not even
+/// one without end.
 #[derive(Clone, Copy, Debug)]
 struct Block {
     least: [[f32; WIDTH]; 3],
@@ -38,8 +39,7 @@ struct Block {
 }
 
 impl Block {
-    const EMPTY: Self =
-        Self { least: [[f32::INFINITY; WIDTH]; 3], greatest: [[f32::NEG_INFINITY; WIDTH]; 3] };
+    const EMPTY: Self = Self { least: [[f32::NAN; WIDTH]; 3], greatest: [[f32::NAN; WIDTH]; 3] };
 
     /// Overwrites the boxes by those of up to eight particles: all places as far from each, along any axis, as its way in the
     /// moving frame is long. Velocities are relative to the world.
@@ -182,6 +182,9 @@ mod tests {
         found.clear();
         boxes.meeting(&Aabb::new(Vec3::new(0.0, 0.3, 0.0), Vec3::splat(20.0)), &mut found);
         assert!(found.is_empty());
+        let endless = Aabb::new(Vec3::NEG_INFINITY, Vec3::INFINITY);
+        boxes.meeting(&endless, &mut found);
+        assert_eq!(found, (0..11).collect::<Vec<_>>(), "what is missing meets nothing");
         let box_of_ten = Aabb::new(Vec3::new(9.75, -0.25, -0.25), Vec3::new(10.25, 0.25, 0.25));
         assert_eq!(boxes.get(10), box_of_ten);
     }

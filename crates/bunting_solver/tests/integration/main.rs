@@ -19,6 +19,7 @@ mod moving_pins;
 mod physics;
 mod points;
 mod pressure;
+mod properties;
 mod regions;
 mod resampled;
 mod rest_on_edges;
