@@ -12,6 +12,8 @@ use bunting_examples::scenes::custom_constraint::CustomConstraint;
 use bunting_examples::scenes::drape::Drape;
 use bunting_examples::scenes::flags::Flags;
 use bunting_examples::scenes::parasol::Parasols;
+#[cfg(feature = "avian")]
+use bunting_examples::scenes::rollback::Rollback;
 use bunting_examples::scenes::storm::Storm;
 use bunting_examples::scenes::swatches::Swatches;
 use bunting_examples::scenes::towel::Towels;
@@ -36,6 +38,8 @@ pub enum Exhibit {
     CustomConstraint,
     #[cfg(feature = "avian")]
     Convoy,
+    #[cfg(feature = "avian")]
+    Rollback,
 }
 
 impl Exhibit {
@@ -54,6 +58,8 @@ impl Exhibit {
             Self::CustomConstraint => 2.0,
             #[cfg(feature = "avian")]
             Self::Convoy => 6.0,
+            #[cfg(feature = "avian")]
+            Self::Rollback => 1.6,
         }
     }
 
@@ -79,6 +85,8 @@ impl Exhibit {
             Self::CustomConstraint => show(&CustomConstraint, &options),
             #[cfg(feature = "avian")]
             Self::Convoy => show(&Convoy, &options),
+            #[cfg(feature = "avian")]
+            Self::Rollback => show(&Rollback::default(), &options),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! All examples but `hello_flag`, which is the README's app. `convoy` is left out without the feature `avian`.
+//! All examples but `hello_flag`, which is the README's app. `convoy` and `rollback` are left out without the feature `avian`.
 //!
 //! `cargo run --release --example gallery --features render,avian` shows one after the other in a window: → and ← go to
 //! the next and the previous one, and each has its own keys.

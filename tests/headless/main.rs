@@ -37,6 +37,7 @@ mod properties;
 mod reactions;
 mod reading;
 mod regions;
+mod reported;
 mod resolution;
 mod rest;
 mod saving;

@@ -3,6 +3,9 @@
 #[doc = include_str!("../../../docs/guide/concepts.md")]
 mod concepts {}
 
+#[doc = include_str!("../../../docs/guide/frames.md")]
+mod frames {}
+
 #[doc = include_str!("../../../docs/guide/materials.md")]
 mod materials {}
 
@@ -23,6 +26,9 @@ mod pressure {}
 
 #[doc = include_str!("../../../docs/guide/colliders.md")]
 mod colliders {}
+
+#[doc = include_str!("../../../docs/guide/caught.md")]
+mod caught {}
 
 #[doc = include_str!("../../../docs/guide/reading.md")]
 mod reading {}
@@ -54,6 +60,9 @@ mod troubleshooting {}
 
 #[doc = include_str!("../../../docs/guide/coming-from.md")]
 mod coming_from {}
+
+#[doc = include_str!("../../../docs/guide/migration.md")]
+mod migration {}
 
 #[cfg(feature = "render")]
 #[doc = include_str!("../../../docs/guide/meshes.md")]

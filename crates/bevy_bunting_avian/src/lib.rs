@@ -67,4 +67,5 @@ mod shape;
 
 pub use error::{ClothColliderError, ClothColliderFailed};
 pub use feels::FeelsCloth;
+pub use former_reaction::FormerReaction;
 pub use plugin::ClothAvianPlugin;

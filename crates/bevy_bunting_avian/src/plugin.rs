@@ -9,6 +9,7 @@ use bevy_ecs::schedule::ScheduleLabel;
 
 use crate::colliders::{copy_colliders, forget_colliders};
 use crate::feels::{FeelsCloth, ask_for_anchors, ask_for_contacts};
+use crate::former_reaction::FormerReaction;
 use crate::layers::copy_layers;
 use crate::push::{pull_by_anchors, push_by_contacts};
 
@@ -36,6 +37,7 @@ impl Default for ClothAvianPlugin {
 impl Plugin for ClothAvianPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<FeelsCloth>()
+            .register_type::<FormerReaction>()
             .configure_sets(self.host, PhysicsSystems::Last.before(run_cloth_tick))
             .add_systems(
                 PhysicsSchedule,

@@ -9,6 +9,8 @@ pub mod custom_constraint;
 pub mod drape;
 pub mod flags;
 pub mod parasol;
+#[cfg(feature = "avian")]
+pub mod rollback;
 pub mod storm;
 pub mod swatches;
 pub mod towel;

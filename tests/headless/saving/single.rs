@@ -92,3 +92,24 @@ fn a_cloth_takes_the_substeps_that_other_settings_ask_for() {
     assert!(steps(&app, flag) < 6);
     assert_eq!(steps(&other, there), 6);
 }
+
+#[test]
+fn reactions_that_were_asked_for_later_are_none_in_the_past() {
+    let mut app = app();
+    let flag = spawn_flag(&mut app, Vec3::ZERO);
+    let ball = (ClothCollider::ball(0.2), Transform::from_xyz(-0.1, -0.4, 0.1));
+    let ball = app.world_mut().spawn(ball).id();
+    run(&mut app, 30);
+    let snapshot = app.world().save_cloths().expect("it can be saved");
+    app.world_mut().entity_mut(flag).insert(AnchorReactions::default());
+    app.world_mut().entity_mut(ball).insert(ClothReactions::default());
+    run(&mut app, 10);
+    let force = |app: &App| {
+        let of_anchor = app.world().get::<AnchorReactions>(flag).expect("asked for").target.force;
+        (of_anchor, app.world().get::<ClothReactions>(ball).expect("asked for").force)
+    };
+    let (of_anchor, of_ball) = force(&app);
+    assert!(of_anchor != Vec3::ZERO && of_ball != Vec3::ZERO, "{of_anchor} {of_ball}");
+    app.world_mut().restore_cloths(&snapshot).expect("it fits");
+    assert_eq!(force(&app), (Vec3::ZERO, Vec3::ZERO));
+}

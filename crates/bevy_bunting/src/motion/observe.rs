@@ -1,8 +1,10 @@
 //! Observes the frames of cloths and the poses of colliders in each frame and each tick.
 
+use bevy_ecs::entity_disabling::Disabled;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemParam;
 use bevy_time::{Time, Virtual};
+use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
 
 use crate::cloth::error::ClothError;
@@ -57,6 +59,16 @@ impl Observer<'_, '_> {
                 history.set_changed();
             }
         }
+    }
+}
+
+/// Lets what was disabled count as moved once it no longer is: nothing was observed meanwhile, and what it follows may have moved.
+pub(super) fn observe_enabled(
+    enabled: On<Remove, Disabled>,
+    mut followers: Query<&mut Transform, (With<PoseHistory>, Allow<Disabled>)>,
+) {
+    if let Ok(mut transform) = followers.get_mut(enabled.entity) {
+        transform.set_changed();
     }
 }
 

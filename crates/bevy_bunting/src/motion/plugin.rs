@@ -25,7 +25,9 @@ use crate::motion::inertia::ClothInertia;
 use crate::motion::lead::lead_pins;
 use crate::motion::lost_target::handle_lost_targets;
 use crate::motion::observation_times::{ObservationTimes, begin_frame};
-use crate::motion::observe::{observe_end_of_ticks, observe_frames, observe_ticks};
+use crate::motion::observe::{
+    observe_enabled, observe_end_of_ticks, observe_frames, observe_ticks,
+};
 use crate::motion::place::place_cloths;
 use crate::motion::report_idle::report_idle_attachments;
 use crate::motion::report_inertia::report_inertia;
@@ -50,6 +52,7 @@ impl Plugin for AttachmentPlugin {
             .init_resource::<ObservationTimes>()
             .add_observer(stop_following)
             .add_observer(shift_poses)
+            .add_observer(observe_enabled)
             .add_systems(
                 RunFixedMainLoop,
                 (

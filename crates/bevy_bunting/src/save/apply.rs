@@ -129,14 +129,14 @@ fn restore_motion(world: &mut World, entity: Entity, saved: &SavedCloth, now: &O
         poses.move_times(&saved.times, now);
         cloth.insert((poses, AnchorPins::default()));
     }
-    if let Some(reactions) = &saved.reactions {
-        if breaks {
-            cloth.insert_if_new(AnchorReactions::default());
-        }
-        if let Some(mut known) = cloth.get_mut::<AnchorReactions>() {
-            known.target = reactions.target;
-            known.anchors.clone_from(&reactions.anchors);
-        }
+    if breaks && saved.reactions.is_some() {
+        cloth.insert_if_new(AnchorReactions::default());
+    }
+    if let Some(mut known) = cloth.get_mut::<AnchorReactions>() {
+        // Those that were asked for later knew of nothing then.
+        let saved = saved.reactions.as_ref();
+        known.target = saved.map(|it| it.target).unwrap_or_default();
+        known.anchors = saved.map(|it| it.anchors.clone()).unwrap_or_default();
     }
 }
 

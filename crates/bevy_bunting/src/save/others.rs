@@ -88,10 +88,9 @@ impl SavedOther {
             Some(blast) => _ = entity.insert(blast),
             None => _ = entity.remove::<WindBlast>(),
         }
-        if let (Some(mut known), Some(reactions)) =
-            (entity.get_mut::<ClothReactions>(), &self.reactions)
-        {
-            known.clone_from(reactions);
+        if let Some(mut known) = entity.get_mut::<ClothReactions>() {
+            // Those that were asked for later knew of nothing then.
+            *known = self.reactions.clone().unwrap_or_default();
         }
         self.restore_grab(world);
     }

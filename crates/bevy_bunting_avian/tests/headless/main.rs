@@ -4,6 +4,7 @@ mod bad_input;
 mod bodies;
 mod colliders;
 mod order;
+mod rollback;
 
 use avian3d::prelude::*;
 use bevy_app::{App, TaskPoolPlugin};
