@@ -37,7 +37,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let diagonals = sweep_order(colours.len(), !pass.is_multiple_of(2));
             self.solve_colours(diagonals, Pass::Again, is_diagonal);
             self.solve_colours(colours.clone().rev(), Pass::Again, is_straight);
-            self.solve_seams_of_pass();
             self.solve_contacts_of_pass();
         }
     }

@@ -32,7 +32,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.solve_diagonals();
         for _ in 0..passes {
             self.solve_warp_and_weft(Pass::Again);
-            self.solve_seams_of_pass();
             self.solve_contacts_of_pass();
         }
     }

@@ -34,7 +34,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             for strip in 0..self.fabric.strips().len() {
                 self.solve_strip(strip, pass == 0);
             }
-            self.solve_seams_of_pass();
             self.solve_contacts_of_pass();
         }
     }

@@ -11,14 +11,9 @@ use crate::stability::relaxation::EXEMPT;
 use crate::step::Scheme;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Solves seams with the lines that end there, after a pass over all lines.
-    pub fn solve_seams_of_pass(&mut self) {
-        self.with_seams(|batch, cloth, seams| batch.solve_seams_of(cloth, seams, false));
-    }
-
-    /// Closes seams after all that holds each cloth together.
+    /// Solves seams with the lines that end there, and closes their stitches, after all that holds each cloth together.
     pub fn close_seams(&mut self) {
-        self.with_seams(|batch, cloth, seams| batch.solve_seams_of(cloth, seams, true));
+        self.with_seams(Self::solve_seams_of);
     }
 
     /// Exempts the particles of closed stitches from under-relaxation, which would draw their sides apart.
@@ -63,7 +58,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
-    fn solve_seams_of(&mut self, cloth: usize, seams: &mut LaneSeams, is_last: bool) {
+    fn solve_seams_of(&mut self, cloth: usize, seams: &mut LaneSeams) {
         let has_lines = self.clock.settings.scheme == Scheme::Yarns;
         if has_lines && seams.places.is_empty() {
             seams.places = self.link_places(cloth, &seams.seams.links);
@@ -77,9 +72,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if has_lines {
             plan.solve(sewing, &limits);
         }
-        if is_last {
-            plan.close(sewing, &limits);
-        }
+        plan.close(sewing, &limits);
         self.scatter_sewn(cloth, seams, has_lines);
     }
 

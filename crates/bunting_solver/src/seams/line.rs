@@ -1,9 +1,9 @@
 //! A line that ends at a seam, solved at once with the impulse there.
 //!
 //! The XPBD system of the line's links, (J M⁻¹ Jᵀ + α̃) Δλ = −C − J M⁻¹ μ e₀ with the impulse μ on its first particle, is tridiagonal
-//! (`constraints/chain.rs`). It is eliminated from the far end to the seam, and says how the first particle answers to μ:
+//! (`constraints/chain.rs`). It is eliminated from the far end to the seam, and says how the first particle responds to μ:
 //! Δp₀ = f + w (I − (w/D) d dᵀ) μ, with D the last pivot, d the direction of the first link, and f what the line does without μ.
-//! Along a line that is taut to a pin the answer is that of the links' stretch alone, across it that of a free particle.
+//! Along a line that is taut to a pin the response is that of the links' stretch alone, across it that of a free particle.
 
 use glam::Vec3;
 
@@ -11,9 +11,9 @@ use crate::constants::LEAST_LENGTH;
 use crate::seams::plan::{Seams, SewnLine};
 use crate::seams::state::{Row, Sewing};
 
-/// How a particle of a stitch answers to an impulse.
+/// How a particle of a stitch responds to an impulse.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Answer {
+pub(super) struct Response {
     /// How far its line moves it in any case, m.
     pub free: Vec3,
     /// Its inverse mass, 1/m².
@@ -25,14 +25,14 @@ pub(super) struct Answer {
 }
 
 impl Sewing {
-    /// The answer of a particle without a line.
-    pub fn answer_alone(&self, particle: usize) -> Answer {
+    /// The response of a particle without a line.
+    pub fn response_alone(&self, particle: usize) -> Response {
         let inverse_mass = self.inverse_mass[particle];
-        Answer { free: Vec3::ZERO, inverse_mass, along: Vec3::ZERO, held: 0.0 }
+        Response { free: Vec3::ZERO, inverse_mass, along: Vec3::ZERO, held: 0.0 }
     }
 
     /// Eliminates the unknowns of a line from its far end to the seam.
-    pub fn eliminate(&mut self, seams: &Seams, line: &SewnLine) -> Answer {
+    pub fn eliminate(&mut self, seams: &Seams, line: &SewnLine) -> Response {
         let points = &seams.points[line.points.clone()];
         let mut end = self.at[points[points.len() - 1] as usize];
         let mut end_mass = self.inverse_mass[points[points.len() - 1] as usize];
@@ -57,7 +57,7 @@ impl Sewing {
             self.rows[link] = behind;
             (end, end_mass) = (start, near_mass);
         }
-        Answer {
+        Response {
             free: behind.direction * (-end_mass * behind.right * behind.inverse),
             inverse_mass: end_mass,
             along: behind.direction,

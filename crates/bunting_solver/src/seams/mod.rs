@@ -3,7 +3,7 @@
 //! A stitch holds a particle on a point between two others. Lines end at seams, and a line that is solved without the one behind the
 //! seam hands on only as much of its load as two single particles can: a panel of thirty rows that hangs from another one would sink by
 //! its thirtieth part of a link in each pass. Therefore a stitch is solved at once with the lines that end there (`line.rs`, `solve.rs`),
-//! after each pass over all lines, as contacts are (`contact/passes.rs`). At the end of a substep all stitches are closed
+//! once in a substep: after each pass it would take three times as long, and panels hang as exactly. Then all stitches are closed
 //! exactly, by their own particles alone.
 
 pub(crate) mod closing;

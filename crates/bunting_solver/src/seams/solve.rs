@@ -4,13 +4,13 @@ use glam::{Mat3, Vec3};
 
 use crate::constants::LEAST_LENGTH;
 use crate::seams::closing::{Limit, Moment};
-use crate::seams::line::Answer;
+use crate::seams::line::Response;
 use crate::seams::plan::{Seams, Sewn};
 use crate::seams::state::Sewing;
 use crate::seams::stitch::Lacing;
 
 /// Part of the mobility of a stitch's particles without lines that is added to that with lines, so that lines which are taut on both
-/// sides have an answer. Smaller: rounding moves such particles. Larger: the load of long lines takes more passes.
+/// sides have a response. Smaller: rounding moves such particles. Larger: the load of long lines takes more passes.
 const RIDGE: f32 = 1e-3;
 
 /// Number of times that stitches are closed by their own particles. Fewer: particles that several stitches share stay apart.
@@ -54,13 +54,13 @@ impl Seams {
         let mut mobility = Mat3::ZERO;
         let mut alone = 0.0;
         for end in &stitch.ends {
-            let answer = match end.line {
+            let response = match end.line {
                 Some(line) => sewing.eliminate(self, &self.lines[line as usize]),
-                None => sewing.answer_alone(end.at as usize),
+                None => sewing.response_alone(end.at as usize),
             };
-            gap += end.weight * (sewing.at[end.at as usize] + answer.free);
-            mobility += answer.mobility() * (end.weight * end.weight);
-            alone += end.weight * end.weight * answer.inverse_mass;
+            gap += end.weight * (sewing.at[end.at as usize] + response.free);
+            mobility += response.mobility() * (end.weight * end.weight);
+            alone += end.weight * end.weight * response.inverse_mass;
         }
         if alone == 0.0 {
             return;
@@ -80,7 +80,7 @@ impl Seams {
     }
 }
 
-impl Answer {
+impl Response {
     fn mobility(&self) -> Mat3 {
         let Self { inverse_mass, along, held, .. } = *self;
         let of_line = Mat3::from_cols(along * along.x, along * along.y, along * along.z);
