@@ -17,7 +17,7 @@ use crate::scenes::rollback::input::{Inputs, drive};
 use crate::scenes::rollback::past::{Costs, Past, Tick, save};
 use crate::scenes::rollback::record::RollbackRecord;
 use crate::scenes::rollback::rewind::{Confirmed, rewind};
-use crate::{Example, Record, View};
+use crate::{Example, Record, View, headless};
 use avian3d::prelude::PhysicsPlugins;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
@@ -61,7 +61,7 @@ impl Example for Rollback {
     }
 
     fn record(&self, _ticks_per_second: usize) -> impl Record {
-        RollbackRecord::default()
+        RollbackRecord::new(|app| headless::start(app, &Self { delay: 0 }))
     }
 
     #[cfg(feature = "render")]

@@ -4,17 +4,35 @@ use bevy::prelude::*;
 
 use crate::Record;
 use crate::durations::Durations;
-use crate::headless;
-use crate::scenes::rollback::Rollback;
 use crate::scenes::rollback::past::{Costs, Tick};
 use crate::scenes::rollback::rewind::{Confirmed, hash};
 use crate::table::table;
 
 /// The last confirmed tick, and the costs of all.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct RollbackRecord {
+    /// Begins the same game with inputs that arrive in time.
+    straight: fn(&mut App),
     confirmed: Confirmed,
     costs: Costs,
+}
+
+impl RollbackRecord {
+    /// A record of a game that goes back, given what begins the same game with inputs that arrive in time.
+    pub fn new(straight: fn(&mut App)) -> Self {
+        Self { straight, confirmed: Confirmed::default(), costs: Costs::default() }
+    }
+
+    /// The hash after a tick where every input arrives in time.
+    fn straight(&self, tick: u32) -> u64 {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, TransformPlugin));
+        (self.straight)(&mut app);
+        while app.world().resource::<Tick>().0 <= tick {
+            app.update();
+        }
+        hash(app.world_mut())
+    }
 }
 
 impl Record for RollbackRecord {
@@ -38,19 +56,8 @@ impl Record for RollbackRecord {
         ];
         println!("{}\n", table(["µs", "median", "95 %"], rows));
         let Confirmed { tick, hash } = self.confirmed;
-        let straight = straight(tick);
+        let straight = self.straight(tick);
         println!("after tick {tick}: {hash:016x}, without going back {straight:016x}");
         hash == straight
     }
-}
-
-/// The hash after a tick where every input arrives in time.
-pub fn straight(tick: u32) -> u64 {
-    let mut app = App::new();
-    app.add_plugins((MinimalPlugins, TransformPlugin));
-    headless::start(&mut app, &Rollback { delay: 0 });
-    while app.world().resource::<Tick>().0 <= tick {
-        app.update();
-    }
-    hash(app.world_mut())
 }
