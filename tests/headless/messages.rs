@@ -9,7 +9,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Vec2, Vec3};
 use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use bevy_transform::prelude::*;
-use bunting_tests::{FLAG, Seen, app, assert_finite, logged, run};
+use bunting_tests::{FLAG, Seen, app, assert_finite, logged, run, state};
 
 fn failures(app: &App) -> Vec<ClothFailed> {
     app.world().resource::<Seen<ClothFailed>>().0.clone()
@@ -182,4 +182,20 @@ fn gravity_that_is_not_a_number_is_logged() {
     run(&mut app, 5);
     assert!(logged().iter().any(|it| it.contains("gravity [0, NaN, 0]")), "{:?}", logged());
     assert_finite(&app, flag);
+}
+
+#[test]
+fn layers_thicker_than_the_cloth_are_logged_once_and_touch_nothing() {
+    let mut app = app();
+    let sheet = |thickness| (FLAG, SelfCollision { thickness, ..Default::default() });
+    let [thick, free] = [app.world_mut().spawn(sheet(20.9)).id(), app.world_mut().spawn(FLAG).id()];
+    logged();
+    run(&mut app, 30);
+    let of_thickness = || logged().into_iter().filter(|it| it.contains("20.9 m")).count();
+    assert_eq!(of_thickness(), 1);
+    let positions = |app: &App, cloth| state(app, cloth).positions().to_vec();
+    assert_eq!(positions(&app, thick), positions(&app, free));
+    app.world_mut().get_mut::<SelfCollision>(thick).expect("a component").thickness = 30.9;
+    run(&mut app, 1);
+    assert!(logged().iter().any(|it| it.contains("30.9 m")), "a change is told again");
 }

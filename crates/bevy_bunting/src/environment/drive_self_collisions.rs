@@ -1,7 +1,11 @@
 //! Sets the distance of layers of cloth that does not pass through itself.
 
+use std::sync::Arc;
+
 use bevy_app::{App, Plugin};
+use bevy_ecs::entity::EntityHashSet;
 use bevy_ecs::prelude::*;
+use bunting_solver::Fabric;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
@@ -41,22 +45,42 @@ fn report_bad_thickness(cloths: Query<(Entity, &SelfCollision), Changed<SelfColl
     }
 }
 
+/// Whether a cloth is so small that a thickness, m, is no distance of its layers: all of it would touch all of it.
+fn is_too_thick(thickness: f32, instance: &ClothInstance) -> bool {
+    let is_small = |fabric: &Arc<Fabric>| thickness / instance.growth.end() > fabric.area().sqrt();
+    instance.fabric().is_some_and(is_small)
+}
+
 /// Sets the distance of layers of each cloth in a lane, since a cloth that has entered a lane has none.
 pub(crate) fn drive_self_collisions(
-    cloths: Query<(&ClothInstance, &SelfCollision)>,
+    cloths: Query<(Entity, &ClothInstance, Ref<SelfCollision>)>,
     mut removed: RemovedComponents<SelfCollision>,
     instances: Query<&ClothInstance, Without<SelfCollision>>,
     mut batches: ResMut<ClothBatches>,
+    mut reported: Local<EntityHashSet>,
 ) {
     for instance in instances.iter_many(removed.read()) {
         if let Some(lane) = instance.lane() {
             batches.lane(lane).set_self_collision(None);
         }
     }
-    for (instance, &SelfCollision { thickness, levels }) in &cloths {
+    reported.retain(|entity| cloths.contains(*entity));
+    for (entity, instance, self_collision) in &cloths {
         let Some(lane) = instance.lane() else { continue };
+        if self_collision.is_changed() {
+            reported.remove(&entity);
+        }
+        let SelfCollision { thickness, levels } = *self_collision;
+        let is_too_thick = is_too_thick(thickness, instance);
+        if is_too_thick && reported.insert(entity) {
+            log::error!(
+                "the SelfCollision of {entity} has a thickness of {thickness} m, and the cloth is smaller: it passes through itself \
+                 until the thickness is a distance of its layers, as 0.005 m"
+            );
+        }
         let thickness = thickness / instance.growth.end();
         let settings = bunting_solver::SelfCollision { thickness };
-        batches.lane(lane).set_self_collision((instance.level < levels).then_some(settings));
+        let is_kept = instance.level < levels && !is_too_thick;
+        batches.lane(lane).set_self_collision(is_kept.then_some(settings));
     }
 }

@@ -20,7 +20,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct SelfCollision {
     /// Distance that layers keep, m: particles from triangles, and edges from edges. Less where the mesh's own
-    /// layers are nearer at rest.
+    /// layers are nearer at rest. Cloth whose area is smaller than the square of it passes through itself, and an error says so.
     pub thickness: f32,
     /// Number of levels of detail that do not pass through themselves: the finest ones. Coarser levels do.
     pub levels: usize,
