@@ -1,7 +1,5 @@
 //! Sets the distance of layers of cloth that does not pass through itself.
 
-use std::sync::Arc;
-
 use bevy_app::{App, Plugin};
 use bevy_ecs::entity::EntityHashSet;
 use bevy_ecs::prelude::*;
@@ -45,10 +43,9 @@ fn report_bad_thickness(cloths: Query<(Entity, &SelfCollision), Changed<SelfColl
     }
 }
 
-/// Whether a cloth is so small that a thickness, m, is no distance of its layers: all of it would touch all of it.
-fn is_too_thick(thickness: f32, instance: &ClothInstance) -> bool {
-    let is_small = |fabric: &Arc<Fabric>| thickness / instance.growth.end() > fabric.area().sqrt();
-    instance.fabric().is_some_and(is_small)
+/// Whether a thickness, m, is no distance of a cloth's layers, since the cloth is smaller: all of it would touch all of it.
+fn is_too_thick(thickness: f32, fabric: &Fabric) -> bool {
+    thickness > fabric.area().sqrt()
 }
 
 /// Sets the distance of layers of each cloth in a lane, since a cloth that has entered a lane has none.
@@ -71,15 +68,15 @@ pub(crate) fn drive_self_collisions(
             reported.remove(&entity);
         }
         let SelfCollision { thickness, levels } = *self_collision;
-        let is_too_thick = is_too_thick(thickness, instance);
+        let in_frame = thickness / instance.growth.end();
+        let is_too_thick = instance.fabric().is_some_and(|fabric| is_too_thick(in_frame, fabric));
         if is_too_thick && reported.insert(entity) {
             log::error!(
                 "the SelfCollision of {entity} has a thickness of {thickness} m, and the cloth is smaller: it passes through itself \
                  until the thickness is a distance of its layers, as 0.005 m"
             );
         }
-        let thickness = thickness / instance.growth.end();
-        let settings = bunting_solver::SelfCollision { thickness };
+        let settings = bunting_solver::SelfCollision { thickness: in_frame };
         let is_kept = instance.level < levels && !is_too_thick;
         batches.lane(lane).set_self_collision(is_kept.then_some(settings));
     }

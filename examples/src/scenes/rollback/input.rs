@@ -44,8 +44,8 @@ impl Inputs {
         Self { delay, last: START }
     }
 
-    /// Hears what has arrived before a tick. Returns the tick whose input that is; none if nothing new has.
-    pub fn hear(&mut self, now: u32) -> Option<u32> {
+    /// Receives what has arrived before a tick. Returns the tick whose input that is; none if nothing new has.
+    pub fn receive(&mut self, now: u32) -> Option<u32> {
         let last = now.saturating_sub(self.delay);
         (last > self.last).then(|| {
             self.last = last;

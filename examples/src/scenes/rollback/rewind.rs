@@ -16,11 +16,11 @@ pub struct Confirmed {
     pub hash: u64,
 }
 
-/// Hears the input of an earlier tick, goes back to it, and simulates again up to the present tick.
+/// Receives the input of an earlier tick, goes back to it, and simulates again up to the present tick.
 pub fn rewind(world: &mut World) -> Result {
     let now = world.resource::<Tick>().0;
-    let heard = world.resource_mut::<Inputs>().hear(now);
-    let Some(first) = heard.filter(|&first| first < now) else { return Ok(()) };
+    let received = world.resource_mut::<Inputs>().receive(now);
+    let Some(first) = received.filter(|&first| first < now) else { return Ok(()) };
     let clock = *world.resource::<Time>();
     restore(world, first)?;
     for tick in first..now {
