@@ -36,6 +36,8 @@ impl<E: Example> Example for Hall<'_, E> {
     fn control(&self, app: &mut App) {
         self.0.control(app);
         app.add_systems(Update, leave);
+        #[cfg(target_arch = "wasm32")]
+        app.add_systems(Last, crate::address::follow);
         Title::add_keys(app, "← →: other examples");
     }
 }

@@ -6,22 +6,29 @@
 //! `cargo run --release --example gallery --features render,avian -- --headless --pictures DIR` writes one picture of
 //! each.
 //!
-//! Each example has its own process, since it is a whole app: it adds systems, and sets resources.
+//! `.ci/web` makes a page of it for browsers.
+//!
+//! Each example has its own process, or is loaded as its own page, since it is a whole app: it adds systems, and sets
+//! resources.
 
+#[cfg(target_arch = "wasm32")]
+mod address;
 mod exhibit;
 mod exit;
 #[cfg(feature = "render")]
 mod hall;
+#[cfg(target_arch = "wasm32")]
+mod page;
+mod run;
+#[cfg(not(target_arch = "wasm32"))]
+mod tour;
 
-use std::env;
-use std::io;
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 
 use bunting_examples::Options;
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 
 use crate::exhibit::Exhibit;
-use crate::exit::{NEXT, PREVIOUS};
 
 /// All examples, one after the other.
 #[derive(Debug, Parser)]
@@ -33,6 +40,12 @@ struct Gallery {
     options: Options,
 }
 
+#[cfg(target_arch = "wasm32")]
+fn main() -> ExitCode {
+    page::show(&Gallery::parse_from(["gallery"]).options)
+}
+
+#[cfg(not(target_arch = "wasm32"))]
 fn main() -> ExitCode {
     let gallery = Gallery::parse();
     if let Some(exhibit) = gallery.only {
@@ -41,44 +54,9 @@ fn main() -> ExitCode {
     if !cfg!(feature = "avian") {
         eprintln!("convoy is left out: it needs --features avian");
     }
-    let shown = if gallery.options.headless() { run_all() } else { tour() };
+    let shown = if gallery.options.headless() { tour::run_all() } else { tour::show() };
     shown.unwrap_or_else(|error| {
         eprintln!("{error}");
         ExitCode::FAILURE
     })
-}
-
-/// Runs each example without a window. Fails if one of them does.
-fn run_all() -> io::Result<ExitCode> {
-    let mut code = ExitCode::SUCCESS;
-    for exhibit in Exhibit::value_variants() {
-        println!("{exhibit:?}");
-        if run(*exhibit)? != Some(0) {
-            code = ExitCode::FAILURE;
-        }
-    }
-    Ok(code)
-}
-
-/// Shows examples in windows, until one is closed.
-fn tour() -> io::Result<ExitCode> {
-    let exhibits = Exhibit::value_variants();
-    let mut shown = 0;
-    loop {
-        let step = match run(exhibits[shown])?.map(u8::try_from) {
-            Some(Ok(NEXT)) => 1,
-            Some(Ok(PREVIOUS)) => exhibits.len() - 1,
-            Some(Ok(0)) => return Ok(ExitCode::SUCCESS),
-            _ => return Ok(ExitCode::FAILURE),
-        };
-        shown = (shown + step) % exhibits.len();
-    }
-}
-
-/// Runs an example in a process of its own with this process's options. Returns its exit code.
-fn run(exhibit: Exhibit) -> io::Result<Option<i32>> {
-    let mut command = Command::new(env::current_exe()?);
-    let name = exhibit.to_possible_value().expect("no example is skipped");
-    command.args(env::args_os().skip(1)).args(["--only", name.get_name()]);
-    command.status().map(|status| status.code())
 }

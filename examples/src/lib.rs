@@ -23,8 +23,12 @@ pub use orbit_example::OrbitExample;
 pub use run::run;
 pub use view::View;
 
-/// Folder of scenes and models.
-pub const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets");
+/// Folder of scenes and models; in browsers it is beside the page.
+pub const ASSETS: &str = if cfg!(target_arch = "wasm32") {
+    "assets"
+} else {
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../assets")
+};
 
 /// The README, whose first example is tested here.
 #[cfg(doctest)]

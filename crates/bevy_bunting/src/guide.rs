@@ -55,6 +55,9 @@ mod scale {}
 #[doc = include_str!("../../../docs/guide/performance.md")]
 mod performance {}
 
+#[doc = include_str!("../../../docs/guide/web.md")]
+mod web {}
+
 #[doc = include_str!("../../../docs/guide/troubleshooting.md")]
 mod troubleshooting {}
 

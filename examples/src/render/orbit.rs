@@ -14,7 +14,7 @@ const TURN: f32 = 0.005;
 const ZOOM: f32 = 0.1;
 
 /// Least and greatest distance, m.
-const DISTANCES: (f32, f32) = (2.0, 200.0);
+const DISTANCES: (f32, f32) = (0.3, 200.0);
 
 /// Least and greatest pitch, rad above the horizon: above the ground, and below the zenith.
 const PITCHES: (f32, f32) = (-0.05, FRAC_PI_2 - 0.01);

@@ -10,7 +10,6 @@ use bevy::core_pipeline::tonemapping::DebandDither;
 use bevy::log::{Level, LogPlugin};
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
-use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
 use bevy::render::render_resource::TextureFormat;
 use bevy::render::settings::{Backends, WgpuSettings};
 use bevy::render::view::screenshot::{Screenshot, save_to_disk};
@@ -83,7 +82,7 @@ fn any_driver() -> bool {
 /// Bevy's plugins for rendering without a window.
 fn windowless() -> PluginGroupBuilder {
     let settings = WgpuSettings { backends: Some(Backends::VULKAN), ..default() };
-    DefaultPlugins
+    let plugins = DefaultPlugins
         .set(AssetPlugin { file_path: ASSETS.to_owned(), ..default() })
         .set(WindowPlugin {
             primary_window: None,
@@ -97,8 +96,11 @@ fn windowless() -> PluginGroupBuilder {
             synchronous_pipeline_compilation: true,
             ..default()
         })
-        .disable::<WinitPlugin>()
-        .disable::<PipelinedRenderingPlugin>()
+        .disable::<WinitPlugin>();
+    // Browsers have neither threads nor this plugin.
+    #[cfg(not(target_arch = "wasm32"))]
+    let plugins = plugins.disable::<bevy::render::pipelined_rendering::PipelinedRenderingPlugin>();
+    plugins
 }
 
 /// Counts the models that are loaded.

@@ -40,6 +40,7 @@ fn write_title(
     mut window: Single<&mut Window, With<PrimaryWindow>>,
     diagnostics: Res<DiagnosticsStore>,
     counts: Res<ClothCounts>,
+    time: Res<Time<Virtual>>,
     title: Res<Title>,
 ) {
     let mean =
@@ -48,8 +49,9 @@ fn write_title(
     let tick = mean(&ClothDiagnosticsPlugin::TICK).unwrap_or_default();
     let levels: Vec<String> = counts.0.iter().map(ToString::to_string).collect();
     window.title = format!(
-        "{} | {frame:.1} ms a frame, cloth {tick:.3} ms a tick | cloths by level: {} | {} | {}",
+        "{}, {:.1} s | {frame:.1} ms a frame, cloth {tick:.3} ms a tick | cloths by level: {} | {} | {}",
         title.name,
+        time.elapsed_secs(),
         levels.join(" "),
         title.note,
         title.keys.join(", "),

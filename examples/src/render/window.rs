@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use bevy::asset::AssetMetaCheck;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 
@@ -10,6 +11,9 @@ use crate::render::inspector;
 use crate::render::{keys, title, viewer};
 use crate::{ASSETS, Example};
 
+/// The element of a browser's page in which an example is drawn, as a selector; its parent has its size.
+const CANVAS: &str = "#cloth";
+
 /// Shows an example until its app ends, and returns the app's exit code. Fails if no display can be opened.
 pub fn run<E: Example>(example: &E) -> ExitCode {
     if !any_display() {
@@ -17,13 +21,20 @@ pub fn run<E: Example>(example: &E) -> ExitCode {
         return ExitCode::FAILURE;
     }
     let mut app = App::new();
-    let window = Window { title: E::NAME.to_owned(), ..default() };
+    let window = Window {
+        title: E::NAME.to_owned(),
+        canvas: Some(CANVAS.to_owned()),
+        fit_canvas_to_parent: true,
+        ..default()
+    };
+    // No asset has a `.meta` file: each question for one would be an error in a browser's console.
+    let meta_check = AssetMetaCheck::Never;
     let stage = example.stage();
     let camera = stage.camera();
     app.add_plugins((
         DefaultPlugins
             .set(WindowPlugin { primary_window: Some(window), ..default() })
-            .set(AssetPlugin { file_path: ASSETS.to_owned(), ..default() }),
+            .set(AssetPlugin { file_path: ASSETS.to_owned(), meta_check, ..default() }),
         ClothPlugins::default(),
         (stage, keys::pause, title::plugin(E::NAME)),
     ));
@@ -42,5 +53,8 @@ pub fn run<E: Example>(example: &E) -> ExitCode {
 
 /// Whether a window can be opened: winit would panic otherwise.
 fn any_display() -> bool {
-    !cfg!(target_os = "linux") || x11rb::connect(None).is_ok()
+    #[cfg(target_os = "linux")]
+    return x11rb::connect(None).is_ok();
+    #[cfg(not(target_os = "linux"))]
+    true
 }

@@ -2,7 +2,7 @@
 
 use core::cell::Cell;
 
-use fearless_simd::{Level, Simd};
+use fearless_simd::Level;
 
 std::thread_local! {
     /// Instruction set that replaces the best one for this thread's kernels; tests set it.
@@ -93,6 +93,8 @@ pub fn instruction_set() -> &'static str {
         Level::Sse2(_) | Level::Sse4_2(_) => "SSE2",
         #[cfg(target_arch = "aarch64")]
         Level::Neon(_) => "NEON",
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        Level::WasmSimd128(_) => "SIMD128",
         _ => "scalar",
     }
 }
@@ -115,6 +117,7 @@ fn levels() -> Vec<Level> {
     let best = Level::new();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
+        use fearless_simd::Simd;
         let all = [
             best.as_avx512().map(Simd::level),
             best.as_avx2().map(Simd::level),

@@ -3,10 +3,10 @@
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, f32x4, f32x8, f32x16};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f32x4, f32x8, f32x16};
 
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
-use crate::simd::level::{dispatch, fuses, level};
+use crate::simd::level::{dispatch, fuses};
 use crate::simd::transpose::{joined, split};
 use crate::simd::vec3::V3;
 
@@ -93,9 +93,10 @@ pack_of_every_set!(Pack8, f32x8, 8);
 impl Pack for Pack16 {
     pack_memory!(16);
 
+    #[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "no such machine"))]
     fn run<K: Kernel<Self>>(kernel: K) {
         #[cfg(target_arch = "x86_64")]
-        if let Level::Avx512(set) = level() {
+        if let fearless_simd::Level::Avx512(set) = crate::simd::level::level() {
             return set.vectorize(
                 #[inline(always)]
                 || kernel.run::<f32x16<_>>(set),

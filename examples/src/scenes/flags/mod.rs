@@ -18,13 +18,20 @@ use crate::{ASSETS, Example, Record};
 pub struct Flags(pub Scene);
 
 impl Flags {
-    /// The scene `assets/scenes/flags.ron`.
+    /// The scene `assets/scenes/flags.ron`; in browsers, which have no files, as it was when this was compiled.
     ///
     /// # Errors
     ///
     /// If the file cannot be read.
     pub fn load() -> Result<Self, SceneError> {
-        bunting_scenes::load(format!("{ASSETS}/scenes/flags.ron")).map(Self)
+        let file = format!("{ASSETS}/scenes/flags.ron");
+        let scene = if cfg!(target_arch = "wasm32") {
+            let source = include_str!("../../../../assets/scenes/flags.ron");
+            bunting_scenes::parse(source, file.as_ref())
+        } else {
+            bunting_scenes::load(file)
+        };
+        scene.map(Self)
     }
 }
 

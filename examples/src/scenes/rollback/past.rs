@@ -1,8 +1,8 @@
 //! The last ticks, to which the game can go back.
 
 use std::collections::VecDeque;
-use std::time::Instant;
 
+use bevy::platform::time::Instant;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 
