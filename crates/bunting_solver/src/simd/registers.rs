@@ -93,7 +93,10 @@ pack_of_every_set!(Pack8, f32x8, 8);
 impl Pack for Pack16 {
     pack_memory!(16);
 
-    #[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "no such machine"))]
+    #[cfg_attr(
+        not(target_arch = "x86_64"),
+        expect(unused_variables, reason = "sixteen lanes need AVX-512")
+    )]
     fn run<K: Kernel<Self>>(kernel: K) {
         #[cfg(target_arch = "x86_64")]
         if let fearless_simd::Level::Avx512(set) = crate::simd::level::level() {
