@@ -28,7 +28,7 @@ impl ClothBatch {
         member: &mut Member,
         origin: Vec3,
         particles: &mut Particles,
-    ) -> f32 {
+    ) -> [f32; 2] {
         with_batch!(&mut self.0, batch => batch.read_grouped(lane, member, origin, particles))
     }
 

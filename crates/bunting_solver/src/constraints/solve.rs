@@ -85,6 +85,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             Stage::SweepBackwards => (0..passes / 2).for_each(|_| self.sweep_links(true)),
             Stage::Overlong => self.solve_overlong_chains(),
         }
+        if matches!(stage, Stage::Lines | Stage::Strips | Stage::LinesBothWays) {
+            self.move_all_layers_apart();
+        }
     }
 }
 

@@ -44,6 +44,12 @@ pub(crate) trait Kernel<P: Pack> {
 pub(crate) trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> {
     /// Whether any lane is true.
     fn any(self) -> bool;
+
+    /// Whether all lanes are true.
+    fn all(self) -> bool;
+
+    /// One bit for each lane, that of the first lane the least.
+    fn bits(self) -> u64;
 }
 
 /// One float for each lane of a batch, in a register.

@@ -21,6 +21,12 @@ pub(crate) struct Pack1([f32; 1]);
 pub(crate) struct Pack4([f32; 4]);
 
 impl Pack4 {
+    /// Four numbers.
+    #[inline]
+    pub const fn new(numbers: [f32; 4]) -> Self {
+        Self(numbers)
+    }
+
     /// The four numbers.
     pub fn vector(&self) -> [f32; 4] {
         self.0
@@ -244,12 +250,32 @@ impl<S: Simd> Mask for fearless_simd::mask32x4<S> {
     fn any(self) -> bool {
         fearless_simd::SimdMask::any_true(self)
     }
+
+    #[inline(always)]
+    fn all(self) -> bool {
+        fearless_simd::SimdMask::all_true(self)
+    }
+
+    #[inline(always)]
+    fn bits(self) -> u64 {
+        fearless_simd::SimdMask::to_bitmask(self)
+    }
 }
 
 impl<S: Simd> Mask for fearless_simd::mask32x8<S> {
     #[inline(always)]
     fn any(self) -> bool {
         fearless_simd::SimdMask::any_true(self)
+    }
+
+    #[inline(always)]
+    fn all(self) -> bool {
+        fearless_simd::SimdMask::all_true(self)
+    }
+
+    #[inline(always)]
+    fn bits(self) -> u64 {
+        fearless_simd::SimdMask::to_bitmask(self)
     }
 }
 
@@ -258,12 +284,32 @@ impl<S: Simd> Mask for fearless_simd::mask32x16<S> {
     fn any(self) -> bool {
         fearless_simd::SimdMask::any_true(self)
     }
+
+    #[inline(always)]
+    fn all(self) -> bool {
+        fearless_simd::SimdMask::all_true(self)
+    }
+
+    #[inline(always)]
+    fn bits(self) -> u64 {
+        fearless_simd::SimdMask::to_bitmask(self)
+    }
 }
 
 impl Mask for bool {
     #[inline(always)]
     fn any(self) -> bool {
         self
+    }
+
+    #[inline(always)]
+    fn all(self) -> bool {
+        self
+    }
+
+    #[inline(always)]
+    fn bits(self) -> u64 {
+        self.into()
     }
 }
 

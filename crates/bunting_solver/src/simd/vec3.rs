@@ -108,18 +108,6 @@ impl<L: Lane> V3<L> {
         }
     }
 
-    /// The smaller of each coordinate.
-    #[inline(always)]
-    pub fn min(self, other: Self) -> Self {
-        Self { x: self.x.min(other.x), y: self.y.min(other.y), z: self.z.min(other.z) }
-    }
-
-    /// The larger of each coordinate.
-    #[inline(always)]
-    pub fn max(self, other: Self) -> Self {
-        Self { x: self.x.max(other.x), y: self.y.max(other.y), z: self.z.max(other.z) }
-    }
-
     /// `self` where the mask is true, `other` elsewhere.
     #[inline(always)]
     pub fn or_where_not(self, mask: L::Mask, other: Self) -> Self {

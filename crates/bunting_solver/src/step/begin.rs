@@ -39,6 +39,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.begin_guides();
         self.begin_local_wind();
         self.begin_pin_reports();
+        self.begin_layers();
         self.gather_contacts(tick);
     }
 

@@ -7,11 +7,11 @@ use glam::Vec3;
 use crate::batch::ClothBatch;
 use crate::contact::cloths::member::{GroupMember, Member};
 use crate::contact::cloths::rules::OfGroup;
-use crate::contact::itself::contacts::LayerContacts;
+use crate::contact::itself::contacts::{LayerContacts, Layers};
 use crate::contact::itself::mesh::ContactMesh;
 use crate::contact::itself::particles::Particles;
 use crate::contact::itself::place::Pose;
-use crate::contact::itself::rounds::{Lanes, Rounds};
+use crate::contact::itself::rounds::Lanes;
 
 /// Number of sweeps over all contacts. Fewer: cloth that lies on cloth trembles and does not fall asleep. More: costs more.
 const SWEEPS: usize = 8;
@@ -165,20 +165,21 @@ impl ClothGroup {
 
     /// Keeps the members apart, and each from its colliders.
     pub fn solve(&mut self, lanes: &mut impl GroupLanes) {
-        let mut step = 0.0_f32;
+        let [mut step, mut rate] = [0.0_f32; 2];
         for (index, member) in self.members.iter_mut().enumerate() {
             let (batch, lane) = lanes.lane(index);
-            let of_member =
+            let [of_member, rate_of_member] =
                 batch.read_grouped(lane, member, self.origin, &mut self.layers.particles);
             step = step.max(of_member);
+            rate = rate.max(rate_of_member);
         }
         let Self { members, mesh, of_patch, of_particle, layers, .. } = self;
         let sewn: Vec<[u32; 2]> = members.iter().flat_map(Member::sewn_of_group).collect();
         let rules = OfGroup { members, of_patch, of_particle, sewn: &sewn };
         let thickness = rules.greatest_thickness();
         layers.particles.touched.fill(false);
-        let rounds = Rounds { mesh, rules: &rules, thickness, step, sweeps: SWEEPS };
-        rounds.solve(layers, &mut LanesOfGroup { members, lanes });
+        let how = Layers { mesh, rules: &rules, thickness, step, rate };
+        how.solve(layers, &mut LanesOfGroup { members, lanes }, SWEEPS);
         let unrelaxed: Vec<usize> = layers.unrelaxed_particles(thickness).collect();
         for (index, member) in members.iter().enumerate() {
             let (batch, lane) = lanes.lane(index);

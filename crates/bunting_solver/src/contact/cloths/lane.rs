@@ -53,15 +53,15 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
-    /// Copies the positions after all other constraints out of the lane, and the masses. Returns the length of the
-    /// substep, s; zero if the cloth does not move in it.
+    /// Copies the positions after all other constraints out of the lane, and the masses. Returns the length of the substep, s, and the rate at
+    /// which pushes become velocities in it, 1/s; zeros if the cloth does not move in it.
     pub fn read_grouped(
         &mut self,
         cloth: usize,
         member: &mut Member,
         origin: Vec3,
         particles: &mut Particles,
-    ) -> f32 {
+    ) -> [f32; 2] {
         let range = member.range.clone();
         member.moves = self.clock.predicted;
         if member.moves {
@@ -81,7 +81,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let finite = |positions: &[Vec3]| positions[range.clone()].iter().all(|it| it.is_finite());
         member.is_finite =
             member.settings.is_valid() && finite(&particles.start) && finite(&particles.end);
-        if member.moves { self.clock.step } else { 0.0 }
+        if member.moves { [self.clock.step, self.inverse_step(cloth)] } else { [0.0; 2] }
     }
 
     /// Copies velocities of particles near others out of the lane. Cloth that does not move has none.

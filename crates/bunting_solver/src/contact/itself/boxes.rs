@@ -1,14 +1,14 @@
 //! Boxes around paths, one in each lane.
 
-use fearless_simd::{Simd, f32x8};
+use fearless_simd::{Simd, SimdInto, f32x4};
+use glam::Vec4;
 
+use crate::contact::itself::features::FeaturePack;
 use crate::contact::itself::swept::{End, Swept};
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
-use crate::simd::registers::Pack8;
+use crate::simd::registers::{Pack4, Pack8};
+use crate::simd::transpose::joined;
 use crate::simd::vec3::{Pack3, V3, set_lane3};
-
-/// Corners of the triangles of a cell, one triangle in each lane; the last in those without one.
-pub(in crate::contact) type Corners = [Pack3<Pack8>; 3];
 
 /// Boxes around paths, like [`Swept`], one in each lane.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +29,36 @@ impl Boxes {
         for at in 0..2 {
             set_lane3(&mut self.low[at], lane, swept.low[at].into());
             set_lane3(&mut self.high[at], lane, swept.high[at].into());
+        }
+    }
+
+    /// Sets the boxes around the paths of features of `COUNT` particles each, given positions of all particles at the start and at the end
+    /// of the substep, m.
+    #[inline(always)]
+    pub fn set_around<S: Simd, const COUNT: usize>(
+        &mut self,
+        token: S,
+        features: &FeaturePack,
+        positions: [&[Pack4]; 2],
+    ) {
+        for (end, positions) in positions.into_iter().enumerate() {
+            let mut low = [<f32x4<S> as Lane>::splat(token, 0.0); Pack8::WIDTH];
+            let mut high = low;
+            for lane in 0..Pack8::WIDTH {
+                let at = |corner: usize| {
+                    let particle = features.particles[corner][lane];
+                    Vec4::from_array(positions[particle as usize].vector())
+                };
+                let (mut l, mut h) = (at(0), at(0));
+                for corner in 1..COUNT {
+                    let at = at(corner);
+                    (l, h) = (l.min(at), h.max(at));
+                }
+                low[lane] = l.to_array().simd_into(token);
+                high[lane] = h.to_array().simd_into(token);
+            }
+            joined(low).store(&mut self.low[end]);
+            joined(high).store(&mut self.high[end]);
         }
     }
 
@@ -55,6 +85,26 @@ pub(in crate::contact) struct Splat<L> {
 }
 
 impl<L: Lane<Pack = Pack8>> Splat<L> {
+    /// The box, widened by a distance in all lanes, m.
+    #[inline(always)]
+    pub fn widened(&self, by: V3<L>) -> Self {
+        Self {
+            low: [self.low[0] - by, self.low[1] - by],
+            high: [self.high[0] + by, self.high[1] + by],
+        }
+    }
+
+    /// Whether it meets others at an end of the substep.
+    #[inline(always)]
+    pub fn meets_at(&self, token: L::Token, end: End, others: &Boxes) -> L::Mask {
+        let at = end as usize;
+        let (low, high) = (&self.low[at], &self.high[at]);
+        let others_low = V3::<L>::load(token, &others.low[at]);
+        let others_high = V3::<L>::load(token, &others.high[at]);
+        (low.x.lt(others_high.x) & low.y.lt(others_high.y) & low.z.lt(others_high.z))
+            & (others_low.x.lt(high.x) & others_low.y.lt(high.y) & others_low.z.lt(high.z))
+    }
+
     #[inline(always)]
     pub fn of(token: L::Token, swept: &Swept) -> Self {
         Self {
@@ -80,20 +130,6 @@ fn overlap<L: Lane>(low: &[V3<L>; 2], high: &[V3<L>; 2]) -> L::Mask {
         & (low[0].z.lt(high[0].z) | low[1].z.lt(high[1].z))
 }
 
-/// Sets boxes around triangles, given an end of their corners' paths, m, and the distance by which the boxes are widened, m.
-#[inline(always)]
-pub(in crate::contact) fn set_around<S: Simd>(
-    token: S,
-    [a, b, c]: &[V3<f32x8<S>>; 3],
-    end: End,
-    by: f32,
-    boxes: &mut Boxes,
-) {
-    let by = V3::splat(token, by);
-    (a.min(*b).min(*c) - by).store(&mut boxes.low[end as usize]);
-    (a.max(*b).max(*c) + by).store(&mut boxes.high[end as usize]);
-}
-
 /// Finds the boxes that meet another.
 pub(in crate::contact) struct FindMeeting<'a> {
     pub one: &'a Boxes,
@@ -109,18 +145,14 @@ pub(in crate::contact) struct FindMeeting<'a> {
 impl Kernel<Pack8> for FindMeeting<'_> {
     #[inline(always)]
     fn run<L: Lane<Pack = Pack8>>(self, token: L::Token) {
-        let [zero, one] = [L::splat(token, 0.0), L::splat(token, 1.0)];
         let splat = self.one.lane::<L>(token, self.lane);
         for (index, boxes) in self.others.iter().enumerate() {
             let meets = splat.meets(token, boxes);
-            if meets.any() {
-                let mut lanes = Pack8::splat(0.0);
-                one.or_where_not(meets, zero).store(&mut lanes);
-                for (lane, &meets) in lanes.lanes().iter().enumerate() {
-                    if meets != 0.0 {
-                        self.found.push(self.first + index * Pack8::WIDTH + lane);
-                    }
-                }
+            let mut bits = meets.bits();
+            while bits != 0 {
+                let lane = bits.trailing_zeros() as usize;
+                self.found.push(self.first + index * Pack8::WIDTH + lane);
+                bits &= bits - 1;
             }
         }
     }

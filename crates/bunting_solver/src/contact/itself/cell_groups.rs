@@ -3,17 +3,15 @@
 
 use core::ops::Range;
 
-use fearless_simd::{Simd, f32x4, f32x8};
+use fearless_simd::{Simd, f32x8};
 use glam::Vec3;
 
 use crate::constants::LEAST_AREA_SQUARED;
 use crate::contact::itself::flat::{Cone, compute_cones};
 use crate::contact::itself::patches::Cell;
-use crate::contact::itself::swept::{End, Path};
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::level::dispatch;
-use crate::simd::registers::Pack8;
-use crate::simd::transpose::joined;
+use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::vec3::{V3, lane3};
 
 /// Most particles of a cell in a group: those of eight triangles in a strip.
@@ -66,19 +64,19 @@ impl CellGroups {
         all
     }
 
-    /// Computes the cones about the normals of all cells at the end of their paths.
-    pub fn compute_cones(&self, cells: &[Cell], paths: &[Path], cones: &mut [Cone]) {
-        dispatch!(token => compute_groups(token, &self.groups, paths, cones));
+    /// Computes the cones about the normals of all cells at the end of the substep, given the positions of all particles then, m.
+    pub fn compute_cones(&self, cells: &[Cell], ends: &[Pack4], cones: &mut [Cone]) {
+        dispatch!(token => compute_groups(token, &self.groups, ends, cones));
         for run in &self.others {
-            compute_cones(&cells[run.clone()], paths, &mut cones[run.clone()]);
+            compute_cones(&cells[run.clone()], ends, &mut cones[run.clone()]);
         }
     }
 }
 
 #[inline(always)]
-fn compute_groups<S: Simd>(token: S, groups: &[CellGroup], paths: &[Path], cones: &mut [Cone]) {
+fn compute_groups<S: Simd>(token: S, groups: &[CellGroup], ends: &[Pack4], cones: &mut [Cone]) {
     for group in groups {
-        group.compute_cones(token, paths, &mut cones[group.first..group.first + Pack8::WIDTH]);
+        group.compute_cones(token, ends, &mut cones[group.first..group.first + Pack8::WIDTH]);
     }
 }
 
@@ -97,15 +95,11 @@ fn corners_in_cell(cell: &Cell) -> Option<Vec<[u8; 3]>> {
 
 impl CellGroup {
     #[inline(always)]
-    fn compute_cones<S: Simd>(&self, token: S, paths: &[Path], cones: &mut [Cone]) {
+    fn compute_cones<S: Simd>(&self, token: S, ends: &[Pack4], cones: &mut [Cone]) {
         let zero = V3::<f32x8<S>>::splat(token, 0.0);
         let mut at = [zero; MOST_PARTICLES];
         for (at, particles) in at.iter_mut().zip(&self.particles) {
-            let mut of_lanes = [<f32x4<S> as Lane>::splat(token, 0.0); Pack8::WIDTH];
-            for (end, &particle) in of_lanes.iter_mut().zip(particles) {
-                *end = Lane::load(token, &paths[particle as usize][End::Last as usize]);
-            }
-            *at = joined(of_lanes);
+            *at = V3::gather(token, ends, particles);
         }
         let least = <f32x8<S> as Lane>::splat(token, LEAST_AREA_SQUARED);
         let one = <f32x8<S> as Lane>::splat(token, 1.0);
@@ -146,7 +140,7 @@ fn lanes_of<S: Simd>(vectors: V3<f32x8<S>>) -> [Vec3; Pack8::WIDTH] {
 mod tests {
     use super::*;
     use crate::contact::itself::mesh::ContactMesh;
-    use crate::contact::itself::swept::end_at;
+    use crate::contact::itself::points::vector;
     use crate::fabric::{FabricBuilder, Grid};
 
     #[test]
@@ -157,10 +151,10 @@ mod tests {
         // Waves that are shorter to the right, where they fold.
         let waved = |at: &Vec3| *at + 0.1 * Vec3::Z * libm::sinf(40.0 * at.x * at.x + 3.0 * at.y);
         let rest = fabric.rest_positions().iter();
-        let paths: Vec<Path> = rest.map(|at| [end_at(*at), end_at(waved(at))]).collect();
+        let ends: Vec<Pack4> = rest.map(|at| vector(waved(at))).collect();
         let [mut one_by_one, mut at_once] = [(); 2].map(|()| vec![Cone::ALL; mesh.cells.len()]);
-        compute_cones(&mesh.cells, &paths, &mut one_by_one);
-        mesh.cell_groups.compute_cones(&mesh.cells, &paths, &mut at_once);
+        compute_cones(&mesh.cells, &ends, &mut one_by_one);
+        mesh.cell_groups.compute_cones(&mesh.cells, &ends, &mut at_once);
         let flat = one_by_one.iter().filter(|cone| cone.is_flat()).count();
         assert!((mesh.cells.len() / 4..mesh.cells.len()).contains(&flat), "{flat} are flat");
         for (one, other) in one_by_one.iter().zip(&at_once) {

@@ -1,13 +1,12 @@
-//! A cloth that may touch itself.
+//! Cloth whose layers may touch.
 
 use crate::contact::itself::mesh::ContactMesh;
-use crate::contact::itself::particles::Particles;
+use crate::contact::itself::points::Points;
 
-/// A cloth that may touch itself.
-#[derive(Clone, Copy)]
+/// Cloth whose layers may touch.
 pub(in crate::contact) struct Cloth<'a> {
     pub mesh: &'a ContactMesh,
-    pub particles: &'a Particles,
+    pub points: &'a Points,
     /// Distance of layers, m.
     pub thickness: f32,
 }

@@ -145,8 +145,18 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
+    /// Moves particles of a cloth where the contacts of a pass have pushed them. These pushes become velocities, as those of lines do: what
+    /// lines respond to them does.
+    pub(in crate::contact) fn push_particles(&mut self, cloth: usize, particles: &Particles) {
+        let positions = self.positions.packs_mut();
+        for (at, end) in particles.end.iter().enumerate().filter(|(at, _)| particles.touched[*at]) {
+            let (pack, lane) = self.layout.locate(at, cloth);
+            set_lane3(&mut positions[pack], lane, *end);
+        }
+    }
+
     /// Rate at which corrections of positions become velocities, 1/s.
-    fn inverse_step(&self, cloth: usize) -> f32 {
+    pub(in crate::contact) fn inverse_step(&self, cloth: usize) -> f32 {
         1.0 / self.parameters.step.lanes()[Y::lanes(cloth).start]
     }
 }

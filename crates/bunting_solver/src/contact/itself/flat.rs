@@ -5,7 +5,6 @@ use glam::Vec3;
 
 use crate::constants::LEAST_AREA_SQUARED;
 use crate::contact::itself::patches::Cell;
-use crate::contact::itself::swept::{End, Path, gather};
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::level::dispatch;
 use crate::simd::registers::Pack4;
@@ -105,17 +104,18 @@ impl Cone {
     }
 }
 
-/// Computes the cones of cells at the end of the substep, given the paths of all particles.
-pub(in crate::contact) fn compute_cones(cells: &[Cell], paths: &[Path], cones: &mut [Cone]) {
-    dispatch!(token => compute(token, cells, paths, cones));
+/// Computes the cones of cells at the end of the substep, given the positions of all particles then, m.
+pub(in crate::contact) fn compute_cones(cells: &[Cell], ends: &[Pack4], cones: &mut [Cone]) {
+    dispatch!(token => compute(token, cells, ends, cones));
 }
 
 #[inline(always)]
-fn compute<S: Simd>(token: S, cells: &[Cell], paths: &[Path], cones: &mut [Cone]) {
+fn compute<S: Simd>(token: S, cells: &[Cell], ends: &[Pack4], cones: &mut [Cone]) {
     let least = <f32x8<S> as Lane>::splat(token, LEAST_AREA_SQUARED);
     let one = <f32x8<S> as Lane>::splat(token, 1.0);
     for (cell, cone) in cells.iter().zip(cones) {
-        let [a, b, c] = gather(token, cell, paths, End::Last);
+        let corner = |at: usize| V3::<f32x8<S>>::gather(token, ends, &cell.corners[at]);
+        let [a, b, c] = [corner(0), corner(1), corner(2)];
         let normal = (b - a).cross(c - a);
         let length = Lane::sqrt(Lane::max(normal.dot(normal), least));
         let normal = normal * (one / length);

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use crate::contact::itself::cell_groups::CellGroups;
+use crate::contact::itself::features::{FeaturePack, FeaturesOfCell};
 use crate::contact::itself::patches::{Cell, Patch, patches_of};
 use crate::fabric::Fabric;
 
@@ -16,62 +17,63 @@ pub(in crate::contact) struct Edge {
     pub inner_end: Option<usize>,
 }
 
-/// The features of a triangle that it stands for in pairs of triangles, so that a pair of features is examined once
-/// though several triangles share each (Curtis 2008, "Fast collision detection for deformable models using
-/// representative-triangles").
-#[derive(Clone, Debug, Default)]
-pub(in crate::contact) struct Represented {
-    pub particles: Vec<u32>,
-    /// Indices of edges.
-    pub edges: Vec<u32>,
-}
-
 /// The features of a fabric that may touch, and the patches in which they are looked up.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ContactMesh {
-    /// Triangles, in the order of the cells.
-    pub(in crate::contact) triangles: Vec<[u32; 3]>,
+    /// Edges, in the order of the cells.
     pub(in crate::contact) edges: Vec<Edge>,
-    /// For each triangle, the features that it stands for.
-    pub(in crate::contact) represented: Vec<Represented>,
     pub(in crate::contact) patches: Vec<Patch>,
     pub(in crate::contact) cells: Vec<Cell>,
     pub(in crate::contact) cell_groups: CellGroups,
+    /// For each cell, its features.
+    pub(in crate::contact) features: Vec<FeaturesOfCell>,
+    /// The features of all cells in packs.
+    pub(in crate::contact) packs: Vec<FeaturePack>,
 }
 
 impl ContactMesh {
     pub fn of(fabric: &Fabric) -> Self {
         let (patches, cells, triangles) = patches_of(fabric);
-        let mut represented = vec![Represented::default(); triangles.len()];
-        let mut has_owner = vec![false; fabric.particle_count()];
-        let mut edges: Vec<Edge> = Vec::new();
+        let mut all = Self { patches, ..Self::default() };
+        let mut has_cell = vec![false; fabric.particle_count()];
         let mut index_of = HashMap::new();
-        for (triangle, represented) in triangles.iter().zip(&mut represented) {
-            for corner in 0..3 {
-                let particle = triangle[corner];
-                if !core::mem::replace(&mut has_owner[particle as usize], true) {
-                    represented.particles.push(particle);
-                }
-                let [from, to] = [particle, triangle[(corner + 1) % 3]];
-                let wing = triangle[(corner + 2) % 3];
-                match index_of.get(&[from.min(to), from.max(to)]) {
-                    Some(&index) => edges[index as usize].wings[1] = Some(wing),
-                    None => {
-                        let index = edges.len() as u32;
-                        index_of.insert([from.min(to), from.max(to)], index);
-                        represented.edges.push(index);
-                        edges.push(Edge {
-                            ends: [from, to],
-                            wings: [Some(wing), None],
-                            inner_end: None,
-                        });
+        for cell in &cells {
+            let triangles = &triangles[cell.triangles.start as usize..cell.triangles.end as usize];
+            let (first_edge, mut particles) = (all.edges.len(), Vec::new());
+            for triangle in triangles {
+                for corner in 0..3 {
+                    let particle = triangle[corner];
+                    if !core::mem::replace(&mut has_cell[particle as usize], true) {
+                        particles.push([particle; 3]);
+                    }
+                    let [from, to] = [particle, triangle[(corner + 1) % 3]];
+                    let wing = triangle[(corner + 2) % 3];
+                    match index_of.get(&[from.min(to), from.max(to)]) {
+                        Some(&index) => all.edges[index as usize].wings[1] = Some(wing),
+                        None => {
+                            index_of.insert([from.min(to), from.max(to)], all.edges.len() as u32);
+                            all.edges.push(Edge {
+                                ends: [from, to],
+                                wings: [Some(wing), None],
+                                inner_end: None,
+                            });
+                        }
                     }
                 }
             }
+            let edges: Vec<[u32; 3]> = all.edges[first_edge..]
+                .iter()
+                .map(|it| [it.ends[0], it.ends[1], it.ends[1]])
+                .collect();
+            let triangles = FeaturePack::add(triangles, 0, &mut all.packs);
+            let edges = FeaturePack::add(&edges, first_edge as u32, &mut all.packs);
+            let particles = FeaturePack::add(&particles, 0, &mut all.packs);
+            all.features.push(FeaturesOfCell { triangles, edges, particles });
         }
-        set_inner_ends(&mut edges, fabric.particle_count());
-        let cell_groups = CellGroups::of(&cells);
-        Self { triangles, edges, represented, patches, cells, cell_groups }
+        set_inner_ends(&mut all.edges, fabric.particle_count());
+        all.cell_groups = CellGroups::of(&cells);
+        all.cells = cells;
+        all
     }
 
     /// The features of several cloths, the particles of each after those of the one before.
@@ -79,32 +81,23 @@ impl ContactMesh {
         let mut all = Self::default();
         let mut first = 0;
         for (part, particles) in parts {
-            let [triangles, edges, patches, cells] =
-                [all.triangles.len(), all.edges.len(), all.patches.len(), all.cells.len()]
+            let [edges, patches, cells, packs] =
+                [all.edges.len(), all.patches.len(), all.cells.len(), all.packs.len()]
                     .map(|count| count as u32);
             let moved = |particle: u32| particle + first;
-            all.triangles.extend(part.triangles.iter().map(|it| it.map(moved)));
             all.edges.extend(part.edges.iter().map(|edge| Edge {
                 ends: edge.ends.map(moved),
                 wings: edge.wings.map(|wing| wing.map(moved)),
                 ..*edge
             }));
-            all.represented.extend(part.represented.iter().map(|it| Represented {
-                particles: it.particles.iter().map(|&particle| moved(particle)).collect(),
-                edges: it.edges.iter().map(|edge| edge + edges).collect(),
-            }));
             all.patches.extend(part.patches.iter().map(|patch| patch.moved(patches, cells, first)));
-            all.cells.extend(part.cells.iter().map(|cell| cell.moved(cells, triangles, first)));
+            all.cells.extend(part.cells.iter().map(|cell| cell.moved(cells, first)));
+            all.features.extend(part.features.iter().map(|it| it.moved(packs)));
+            all.packs.extend(part.packs.iter().map(|pack| pack.moved(edges, first)));
             first += particles;
         }
         all.cell_groups = CellGroups::of(&all.cells);
         all
-    }
-
-    /// Whether two triangles have a number of corners in common, or more.
-    pub(in crate::contact) fn share_corners(&self, triangles: [usize; 2], count: usize) -> bool {
-        let [one, other] = triangles.map(|triangle| self.triangles[triangle]);
-        one.iter().filter(|corner| other.contains(corner)).nth(count - 1).is_some()
     }
 }
 

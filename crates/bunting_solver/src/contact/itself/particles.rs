@@ -2,11 +2,10 @@
 
 use glam::Vec3;
 
-use crate::contact::itself::pairs::Pairs;
-
-/// Least sum of the squared factors of particles that are not pinned. Smaller: contacts beside pins move particles far
-/// away. Larger: layers beside pins pass through one another until they return.
-const LEAST_FREE: f32 = 0.05;
+/// Least inverse mass of the relative motion of features, as a part of that of their lightest particle. Smaller: where light particles are
+/// far from where features touch that are pinned or press on colliders, they are moved far away. Larger: such features pass through one
+/// another until they return.
+pub(in crate::contact) const LEAST_SHARE: f32 = 0.1;
 
 /// The particles of a cloth in a substep.
 #[derive(Clone, Debug, Default)]
@@ -15,10 +14,6 @@ pub(crate) struct Particles {
     pub start: Vec<Vec3>,
     /// Positions, corrected so far, m.
     pub end: Vec<Vec3>,
-    /// Length of the path along which contacts have moved each particle in the sweeps so far, m.
-    pub travel: Vec<f32>,
-    /// Longest of these paths, m.
-    pub farthest: f32,
     /// Whether a contact may change the particle. Velocities are known of these alone.
     pub is_near: Vec<bool>,
     /// Inverse masses per unit area density, 1/m²; zero of pins.
@@ -54,30 +49,9 @@ impl Particles {
         self.is_near.resize(count, false);
     }
 
-    /// Counts the paths along which contacts move particles from here on.
-    pub fn forget_travel(&mut self) {
-        self.travel.clear();
-        self.travel.resize(self.end.len(), 0.0);
-        self.farthest = 0.0;
-    }
-
-    /// Moves a particle.
-    #[inline]
-    pub fn shift(&mut self, particle: usize, by: Vec3) {
-        self.end[particle] += by;
-        self.travel[particle] += by.length();
-        self.farthest = self.farthest.max(self.travel[particle]);
-    }
-
     /// Length of a particle's way in this substep and the one before, m.
     pub fn way(&self, particle: usize) -> f32 {
         self.start[particle].distance(self.end[particle]) + self.past_way[particle]
-    }
-
-    /// Marks the particles of pairs as near others.
-    pub(in crate::contact) fn mark_near(&mut self, pairs: &Pairs) {
-        self.is_near.fill(false);
-        pairs.particles().for_each(|particle| self.is_near[particle] = true);
     }
 }
 
@@ -92,17 +66,17 @@ pub(in crate::contact) fn relative(
     terms.fold(Vec3::ZERO, |sum, (&particle, factor)| sum + vectors[particle as usize] * factor)
 }
 
-/// Inverse mass of the relative motion of features, 1/m², given the factors of their particles; none if the points that
-/// touch are almost pinned.
+/// Inverse mass of the relative motion of features, 1/m², given the factors of their particles; none if all are pinned. Where it is less than
+/// a part of that of the lightest particle, it is that part.
 pub(in crate::contact) fn inverse_mass(
     particles: &Particles,
     factors: impl Iterator<Item = (usize, f32)>,
 ) -> Option<f32> {
-    let (mut sum, mut free) = (0.0, 0.0);
+    let (mut sum, mut greatest) = (0.0, 0.0_f32);
     for (particle, factor) in factors {
         let inverse_mass = particles.inverse_mass[particle];
         sum += inverse_mass * factor * factor;
-        free += if inverse_mass > 0.0 { factor * factor } else { 0.0 };
+        greatest = greatest.max(inverse_mass);
     }
-    (free > LEAST_FREE).then_some(sum)
+    (greatest > 0.0).then_some(sum.max(LEAST_SHARE * greatest))
 }

@@ -14,7 +14,7 @@ use crate::simd::registers::Pack8;
 const LARGEST_PATCH: usize = 32;
 
 /// Most triangles of a cell, which are compared with another in lanes.
-const LARGEST_CELL: usize = Pack8::WIDTH;
+pub(in crate::contact) const LARGEST_CELL: usize = Pack8::WIDTH;
 
 /// Neighbouring triangles, in cells.
 #[derive(Clone, Debug)]
@@ -30,6 +30,8 @@ pub(in crate::contact) struct Patch {
 pub(in crate::contact) struct Cell {
     pub triangles: Range<u32>,
     pub particles: Vec<u32>,
+    /// Length of its longest edge at rest, m.
+    pub longest_edge: f32,
     /// Corners of its triangles, one triangle in each lane; the last in those without one.
     pub corners: [[u32; LARGEST_CELL]; 3],
     pub neighbours: Vec<Neighbour>,
@@ -47,12 +49,13 @@ impl Patch {
 }
 
 impl Cell {
-    /// The cell among others, with larger indices of cells, triangles and particles.
-    pub(in crate::contact) fn moved(&self, cells: u32, triangles: u32, particles: u32) -> Self {
+    /// The cell among others, with larger indices of cells and particles.
+    pub(in crate::contact) fn moved(&self, cells: u32, particles: u32) -> Self {
         let moved = |particle: u32| particle + particles;
         Self {
-            triangles: self.triangles.start + triangles..self.triangles.end + triangles,
+            triangles: self.triangles.clone(),
             particles: self.particles.iter().map(|&it| moved(it)).collect(),
+            longest_edge: self.longest_edge,
             corners: self.corners.map(|corners| corners.map(moved)),
             neighbours: self.neighbours.iter().map(|it| it.moved(cells)).collect(),
         }
@@ -78,7 +81,13 @@ pub(in crate::contact) fn patches_of(fabric: &Fabric) -> (Vec<Patch>, Vec<Cell>,
         let of_lane = |lane: usize| triangles[range.start as usize + lane.min(of_cell.len() - 1)];
         let corners =
             core::array::from_fn(|corner| core::array::from_fn(|lane| of_lane(lane)[corner]));
-        Cell { triangles: range, particles: particles_of(fabric, of_cell), corners, neighbours }
+        Cell {
+            triangles: range,
+            particles: particles_of(fabric, of_cell),
+            longest_edge: longest_edge(fabric, of_cell),
+            corners,
+            neighbours,
+        }
     });
     let cells: Vec<Cell> = cells.collect();
     let of_patches = neighbours(patches.iter().map(|(triangles, _)| triangles), fabric);
@@ -158,6 +167,13 @@ fn edges_of<'a>(fabric: &'a Fabric, triangles: &'a [u32]) -> impl Iterator<Item 
     let sides = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
     let edges = triangles.iter().flat_map(move |&it| sides(fabric.triangles()[it as usize]));
     edges.map(|[a, b]| [a.min(b), a.max(b)])
+}
+
+/// Length of the longest edge of some triangles at rest, m.
+fn longest_edge(fabric: &Fabric, triangles: &[u32]) -> f32 {
+    let rest = |particle: u32| fabric.rest_positions()[particle as usize];
+    let lengths = edges_of(fabric, triangles).map(|[a, b]| rest(a).distance(rest(b)));
+    lengths.fold(0.0, f32::max)
 }
 
 /// Particles of some triangles, in order.

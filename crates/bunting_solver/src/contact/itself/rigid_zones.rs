@@ -8,7 +8,7 @@
 use glam::Vec3;
 
 use crate::contact::itself::crossing::crossing;
-use crate::contact::itself::pairs::Pairs;
+use crate::contact::itself::pairs::EdgeTriangle;
 use crate::contact::itself::particles::Particles;
 use crate::contact::itself::untangle::Tangles;
 
@@ -67,7 +67,12 @@ impl RigidZones {
 
     /// Returns zones to where they began, moved by their mean displacement, until no pair passes through one another.
     /// Returns whether any zone grew and none was given up. Tangled features are left alone.
-    pub fn grow(&mut self, pairs: &Pairs, tangles: &Tangles, particles: &mut Particles) -> bool {
+    pub fn grow(
+        &mut self,
+        pairs: &[EdgeTriangle],
+        tangles: &Tangles,
+        particles: &mut Particles,
+    ) -> bool {
         let before = self.growths;
         // The pairs may be others than those of the last call.
         self.moved.clear();
@@ -95,10 +100,10 @@ impl RigidZones {
     }
 
     /// Unites the zones of features that pass through one another; returns whether there were any.
-    fn unite_crossing(&mut self, pairs: &Pairs, tangles: &Tangles, ends: &[Vec3]) -> bool {
+    fn unite_crossing(&mut self, pairs: &[EdgeTriangle], tangles: &Tangles, ends: &[Vec3]) -> bool {
         let mut grew = false;
         let moved = |particle: u32| self.moved.get(particle as usize) != Some(&false);
-        for pair in &pairs.edges_triangles {
+        for pair in pairs {
             if !pair.particles().into_iter().any(moved) {
                 continue;
             }
@@ -198,14 +203,14 @@ mod tests {
     use glam::Vec3;
 
     use super::{GROWTHS, RigidZones};
-    use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
+    use crate::contact::itself::pairs::EdgeTriangle;
     use crate::contact::itself::particles::Particles;
     use crate::contact::itself::untangle::Tangles;
 
     /// An edge that has passed through a triangle below it.
-    fn passed() -> (Pairs, Particles) {
-        let pair = EdgeTriangle { index: 0, edge: [0, 1], triangle: [2, 3, 4], patches: [0, 1] };
-        let pairs = Pairs { edges_triangles: vec![pair], ..Pairs::default() };
+    fn passed() -> (Vec<EdgeTriangle>, Particles) {
+        let pair = EdgeTriangle { index: 0, edge: [0, 1], triangle: [2, 3, 4] };
+        let pairs = vec![pair];
         let mut particles = Particles::default();
         particles.resize(5);
         particles.start =
@@ -230,10 +235,10 @@ mod tests {
 
     /// Edges above triangles, of which the first has passed through its triangle. Each further edge ends at a corner of the
     /// triangle before it, just above its own triangle: it passes as soon as the zone that holds this corner moves down.
-    fn passes_in_turn(count: u32) -> (Pairs, Particles) {
+    fn passes_in_turn(count: u32) -> (Vec<EdgeTriangle>, Particles) {
         /// Distance of an edge's end from the triangle below it, m: less than the zone of all particles moves.
         const ABOVE: f32 = 1e-3;
-        let mut pairs = Pairs::default();
+        let mut pairs = Vec::new();
         let mut at = vec![Vec3::ZERO];
         for index in 0..count {
             // The corner that the next edge hangs from is the last one.
@@ -242,11 +247,10 @@ mod tests {
             let around = [[-1.0, 0.0, -1.0], [-1.0, 0.0, 1.0], [2.0, 0.0, 0.0]].map(Vec3::from);
             at.push(at[end as usize] + Vec3::Y);
             at.extend(around.map(|corner| below + corner));
-            pairs.edges_triangles.push(EdgeTriangle {
+            pairs.push(EdgeTriangle {
                 index,
                 edge: [end, end + 1],
                 triangle: [end + 2, end + 3, end + 4],
-                patches: [0, 1],
             });
         }
         let mut particles = Particles::default();

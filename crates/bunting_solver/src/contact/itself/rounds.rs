@@ -1,7 +1,6 @@
 //! The contacts of layers in a substep: with one another, then with colliders, which press them together again.
 
-use crate::contact::itself::contacts::LayerContacts;
-use crate::contact::itself::mesh::ContactMesh;
+use crate::contact::itself::contacts::{LayerContacts, Layers};
 use crate::contact::itself::particles::Particles;
 use crate::contact::itself::rules::Rules;
 
@@ -21,45 +20,28 @@ pub(in crate::contact) trait Lanes {
     fn touch_colliders(&mut self, particles: &mut Particles) -> bool;
 }
 
-/// How layers are kept apart in a substep.
-pub(in crate::contact) struct Rounds<'a, R> {
-    pub mesh: &'a ContactMesh,
-    pub rules: &'a R,
-    /// Greatest distance that any layers keep, m.
-    pub thickness: f32,
-    /// Length of the substep, s.
-    pub step: f32,
-    /// Number of sweeps over all contacts in a round.
-    pub sweeps: usize,
-}
-
-impl<R: Rules> Rounds<'_, R> {
-    /// Keeps layers apart and away from colliders, and returns those that still pass through one another. Positions and
-    /// masses of all particles have been gathered before.
-    pub fn solve(&self, layers: &mut LayerContacts, lanes: &mut impl Lanes) {
-        let Self { mesh, rules, thickness, step, sweeps } = *self;
-        let mut meet = layers.find(mesh, thickness, rules);
-        layers.untangle(mesh, step);
-        layers.gather(step, rules);
+impl<R: Rules> Layers<'_, R> {
+    /// Keeps layers apart and away from colliders, in some number of sweeps over all contacts in a round, and returns those that still pass
+    /// through one another. Positions and masses of all particles have been gathered before.
+    pub fn solve(&self, contacts: &mut LayerContacts, lanes: &mut impl Lanes, sweeps: usize) {
+        contacts.begin(self);
+        contacts.untangle(self.mesh, self.step);
         for _ in 0..ROUNDS {
-            if meet {
-                lanes.read_velocities(&mut layers.particles);
-                layers.separate(sweeps);
-                lanes.write(&layers.particles);
-                layers.particles.touched.fill(false);
+            if contacts.meet() {
+                lanes.read_velocities(&mut contacts.particles);
+                contacts.separate(self, sweeps);
+                lanes.write(&contacts.particles);
+                contacts.particles.touched.fill(false);
             }
-            if !lanes.touch_colliders(&mut layers.particles) {
+            if !lanes.touch_colliders(&mut contacts.particles) {
                 break;
             }
-            if layers.are_outdated(mesh, thickness) {
-                meet = layers.find(mesh, thickness, rules);
-                layers.gather(step, rules);
-            }
+            contacts.renew(self);
         }
-        if meet && let Some(mut zones) = layers.return_zones(mesh, thickness, rules) {
-            lanes.read_velocities(&mut layers.particles);
-            zones.stop(&mut layers.particles);
-            lanes.write(&layers.particles);
+        if let Some(mut zones) = contacts.return_zones(self) {
+            lanes.read_velocities(&mut contacts.particles);
+            zones.stop(&mut contacts.particles);
+            lanes.write(&contacts.particles);
         }
     }
 }

@@ -1,130 +1,246 @@
 //! Features that come nearer than the thickness are moved apart, in sweeps over all their contacts.
+//!
+//! A contact is C = n·Σ wᵢ xᵢ − d ≥ 0, with Coulomb friction, of four particles with factors wᵢ: one and the negative barycentric
+//! coordinates of a particle over a triangle, or those of the closest points of two edges. A feature that has passed through another in
+//! the substep returns to the side on which it began.
 
-use glam::Vec3;
+use core::marker::PhantomData;
 
-use crate::contact::itself::contact::Contact;
-use crate::contact::itself::near::Kind;
-use crate::contact::itself::pairs::Pairs;
-use crate::contact::itself::particles::Particles;
-use crate::contact::itself::rules::{Keep, Rules};
-use crate::contact::itself::untangle::Tangles;
+use crate::constants::LEAST_LENGTH;
+use crate::contact::itself::contact_packs::ContactPack;
+use crate::contact::itself::near::Features;
+use crate::contact::itself::particles::LEAST_SHARE;
+use crate::contact::itself::points::{Points, gather};
+use crate::simd::lane::{Kernel, Lane, Mask, Pack};
+use crate::simd::registers::{Pack4, Pack8};
+use crate::simd::vec3::V3;
 
-/// Speed at which features that are too near at the start of a substep move apart, m/s. Smaller: layers stay pressed
-/// together for long. Larger: links beside them are stretched.
-const RECOVERY: f32 = 0.5;
+/// Depth that is left alone, m. Larger: layers at rest tremble. Smaller: rounding errors cost sweeps.
+const LEAST_DEPTH: f32 = 1e-6;
 
-/// Part of the distance at rest that features keep which are nearer than the thickness at rest. Larger: such features
-/// are pushed by rounding errors.
-const REST_PART: f32 = 0.8;
+/// Approach that is left alone, m/s. Larger: layers at rest tremble. Smaller: rounding errors cost sweeps.
+const LEAST_APPROACH: f32 = 1e-4;
 
-/// Distance from which on features are no contact, as a multiple of what they keep: other contacts move particles by about
-/// the thickness.
-pub(in crate::contact) const FAR: f32 = 2.0;
-
-/// The contacts of layers in a substep.
-#[derive(Clone, Debug, Default)]
-pub(in crate::contact) struct Contacts {
-    contacts: Vec<Contact>,
-    /// For each contact, the [`travel`](Particles::travel) of its particles, m, up to which its features stay farther apart
-    /// than they must.
-    reach: Vec<f32>,
+/// Moves features apart that are too near, once. Returns whether any were.
+pub(in crate::contact) fn move_apart<F: Features>(
+    packs: &mut [ContactPack],
+    points: &mut Points,
+) -> bool {
+    let mut any = false;
+    Pack8::run(MoveApart::<F> { packs, points, any: &mut any, kind: PhantomData });
+    any
 }
 
-impl Contacts {
-    pub fn clear(&mut self) {
-        self.contacts.clear();
-    }
+/// Stops the approach of features that were moved apart, once. Returns whether any did.
+pub(in crate::contact) fn stop(packs: &mut [ContactPack], points: &mut Points) -> bool {
+    let mut any = false;
+    Pack8::run(Stop { packs, points, any: &mut any });
+    any
+}
 
-    /// Moves all features apart that are too near, and stops their approach, in at most so many sweeps over all contacts.
-    pub fn separate(&mut self, particles: &mut Particles, sweeps: usize) {
-        let Self { contacts, reach } = self;
-        reach.clear();
-        reach.resize(contacts.len(), 0.0);
-        contacts.iter_mut().for_each(|contact| contact.fresh = 0.0);
-        particles.forget_travel();
-        for _ in 0..sweeps {
-            let mut any = false;
-            for (contact, reach) in contacts.iter_mut().zip(reach.iter_mut()) {
-                // The four particles have not travelled farther than four times the farthest one.
-                if 4.0 * particles.farthest >= *reach {
-                    any |= contact.project(particles, reach);
-                }
+struct MoveApart<'a, F> {
+    packs: &'a mut [ContactPack],
+    points: &'a mut Points,
+    any: &'a mut bool,
+    kind: PhantomData<F>,
+}
+
+impl<F: Features> Kernel<Pack8> for MoveApart<'_, F> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = Pack8>>(self, token: L::Token) {
+        let Points { start, end, .. } = self.points;
+        let [zero, one] = [L::splat(token, 0.0), L::splat(token, 1.0)];
+        let least_depth = L::splat(token, LEAST_DEPTH);
+        let least_length = L::splat(token, LEAST_LENGTH);
+        for pack in self.packs {
+            let ends = gather::<L>(token, end, &pack.particles);
+            let near = F::near(token, &ends, L::load(token, &pack.passed));
+            let before = L::load(token, &pack.depth);
+            // What an earlier sweep gave is taken back where others have given too much.
+            let depth = (L::load(token, &pack.distance) - near.gap).max(-before);
+            let acts = near.faces & least_depth.lt(depth.abs());
+            keep_where(token, near.faces, near.normal, &near.factors, pack);
+            if !acts.any() {
+                continue;
             }
-            if !any {
-                break;
-            }
+            let weights = Weights::<L>::load(token, pack, &near.factors);
+            let acts = acts & weights.are_free;
+            let starts = gather::<L>(token, start, &pack.particles);
+            let slide = relative(&near.factors, &ends) - relative(&near.factors, &starts);
+            let slide = slide.minus_scaled(near.normal, slide.dot(near.normal));
+            let length = slide.dot(slide).sqrt().max(least_length);
+            let held = (L::load(token, &pack.friction) * depth.max(zero) / length).min(one);
+            let by = (near.normal * depth).minus_scaled(slide, held) * weights.inverse_sum;
+            let by = by.or_where_not(acts, V3::splat(token, 0.0));
+            move_by(token, end, &pack.particles, &ends, by, &weights.of_particles);
+            (before + depth).or_where_not(acts, before).store(&mut pack.depth);
+            *self.any |= acts.any();
         }
-        for _ in 0..sweeps {
-            let mut any = false;
-            for contact in contacts.iter_mut().filter(|contact| contact.depth > 0.0) {
-                any |= contact.stop(particles);
-            }
-            if !any {
-                break;
-            }
-        }
-    }
-
-    /// The contacts of features that are as near as they may be, given what counts as such, m.
-    pub fn touching(&self, particles: &Particles, within: f32) -> impl Iterator<Item = &Contact> {
-        self.contacts.iter().filter(move |contact| contact.is_touching(particles, within))
-    }
-
-    /// Particles of features that are still much nearer than they must be.
-    pub fn pressed_particles(&self, particles: &Particles) -> impl Iterator<Item = usize> {
-        let pressed = self.contacts.iter().filter(|contact| contact.is_pressed(particles));
-        pressed.flat_map(Contact::particles)
     }
 }
 
-/// The distances of contacts.
-pub(in crate::contact) struct Spacing<'a, R> {
-    pub rules: &'a R,
-    /// Length of the substep, s.
-    pub step: f32,
-    /// Features that pass through one another at the start of the substep.
-    pub tangles: &'a Tangles,
+struct Stop<'a> {
+    packs: &'a mut [ContactPack],
+    points: &'a mut Points,
+    any: &'a mut bool,
 }
 
-impl<R: Rules> Spacing<'_, R> {
-    /// Gathers the contacts of pairs.
-    pub fn gather(&self, pairs: &Pairs, particles: &Particles, into: &mut Contacts) {
-        into.contacts.clear();
-        let triangles = pairs.particles_triangles.iter().map(|&it| (it, Kind::ParticleTriangle));
-        let edges = pairs.edges_edges.iter().map(|&it| (it, Kind::EdgeEdge));
-        let all = triangles.chain(edges);
-        into.contacts.extend(all.filter_map(|(pair, kind)| self.contact(pair, kind, particles)));
-    }
-
-    /// The contact of two features; none if they stay apart.
-    fn contact(&self, pair: [u32; 4], kind: Kind, particles: &Particles) -> Option<Contact> {
-        // Tangled features must pass through others to come apart.
-        if self.tangles.contain_any(&pair) {
-            return None;
+impl Kernel<Pack8> for Stop<'_> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = Pack8>>(self, token: L::Token) {
+        let Points { velocity, past_velocity, impact, .. } = self.points;
+        let [zero, one] = [L::splat(token, 0.0), L::splat(token, 1.0)];
+        let least_approach = L::splat(token, LEAST_APPROACH);
+        let least_length = L::splat(token, LEAST_LENGTH);
+        for pack in self.packs {
+            let touches = zero.lt(L::load(token, &pack.depth));
+            if !touches.any() {
+                continue;
+            }
+            let factors = [
+                L::load(token, &pack.factors[0]),
+                L::load(token, &pack.factors[1]),
+                L::load(token, &pack.factors[2]),
+                L::load(token, &pack.factors[3]),
+            ];
+            let normal = V3::load(token, &pack.normal);
+            let velocities = gather::<L>(token, velocity, &pack.particles);
+            let relative_velocity = relative(&factors, &velocities);
+            let stopped = L::load(token, &pack.stopped);
+            // What an earlier sweep gave is taken back where others have given too much: else features would leave each other in each
+            // substep, and layers at rest would tremble.
+            let approach = (-relative_velocity.dot(normal)).max(-stopped);
+            // As far as the features approached each other at the start of the substep, this is an impact.
+            let past = relative(&factors, &gather::<L>(token, past_velocity, &pack.particles));
+            let impacted = L::load(token, &pack.impact);
+            let impact_now = (-past.dot(normal)).max(zero).min(stopped + approach);
+            let changes = least_approach.lt(approach.abs().max((impact_now - impacted).abs()));
+            let acts = touches & changes;
+            if !acts.any() {
+                continue;
+            }
+            let weights = Weights::<L>::load(token, pack, &factors);
+            let acts = acts & weights.are_free;
+            let slide = relative_velocity.minus_scaled(normal, relative_velocity.dot(normal));
+            let length = slide.dot(slide).sqrt().max(least_length);
+            let held = (L::load(token, &pack.friction) * approach.max(zero) / length).min(one);
+            let change = (normal * approach).minus_scaled(slide, held) * weights.inverse_sum;
+            let change = change.or_where_not(acts, V3::splat(token, 0.0));
+            move_by(token, velocity, &pack.particles, &velocities, change, &weights.of_particles);
+            let stopped_now = (stopped + approach).or_where_not(acts, stopped);
+            let impact_change = normal * ((impact_now - impacted) * weights.inverse_sum);
+            let impact_change = impact_change.or_where_not(acts, V3::splat(token, 0.0));
+            let impacts = gather::<L>(token, impact, &pack.particles);
+            move_by(token, impact, &pack.particles, &impacts, impact_change, &weights.of_particles);
+            stopped_now.store(&mut pack.stopped);
+            impact_now.or_where_not(acts, impacted).store(&mut pack.impact);
+            *self.any |= acts.any();
         }
-        let of = |positions: &[Vec3]| pair.map(|particle| positions[particle as usize]);
-        let (start, end) = (of(&particles.start), of(&particles.end));
-        let passed = kind.passed(start, end);
-        let Keep { distance, friction, rest } = self.rules.keep(pair);
-        let near = kind.near(end, passed).filter(|near| near.gap < FAR * distance)?;
-        let is_near_at_rest = |rest: &[Vec3; 4]| kind.are_within(rest, distance / REST_PART);
-        let at_rest = rest
-            .filter(is_near_at_rest)
-            .map_or(f32::INFINITY, |rest| REST_PART * kind.distance(rest));
-        let distance = distance.min(at_rest).min(kind.distance(start) + RECOVERY * self.step);
-        Some(Contact {
-            particles: pair,
-            kind,
-            distance,
-            friction,
-            passed,
-            normal: near.normal,
-            factors: near.factors,
-            is_facing: true,
-            fresh: 0.0,
-            depth: 0.0,
-            stopped: 0.0,
-            impact: 0.0,
-        })
+    }
+}
+
+/// How the particles of contacts share what moves them.
+struct Weights<L: Lane> {
+    /// Factor times inverse mass of each particle.
+    of_particles: [L; 4],
+    /// Mass of the relative motion of the features, m².
+    inverse_sum: L,
+    /// Whether any particle is not pinned.
+    are_free: L::Mask,
+}
+
+impl<L: Lane<Pack = Pack8>> Weights<L> {
+    #[inline(always)]
+    fn load(token: L::Token, pack: &ContactPack, factors: &[L; 4]) -> Self {
+        let zero = L::splat(token, 0.0);
+        let mut of_particles = [zero; 4];
+        let (mut sum, mut greatest) = (zero, zero);
+        for at in 0..4 {
+            let inverse = L::load(token, &pack.inverse_masses[at]);
+            of_particles[at] = factors[at] * inverse;
+            sum = sum.plus_product(of_particles[at], factors[at]);
+            greatest = greatest.max(inverse);
+        }
+        let are_free = zero.lt(greatest);
+        let one = L::splat(token, 1.0);
+        let sum = sum.max(greatest * L::splat(token, LEAST_SHARE));
+        Self { of_particles, inverse_sum: one / sum.or_where_not(are_free, one), are_free }
+    }
+}
+
+/// Sum of four vectors with the factors of a contact.
+#[inline(always)]
+fn relative<L: Lane>(factors: &[L; 4], vectors: &[V3<L>; 4]) -> V3<L> {
+    (vectors[0] * factors[0])
+        .plus_scaled(vectors[1], factors[1])
+        .plus_scaled(vectors[2], factors[2])
+        .plus_scaled(vectors[3], factors[3])
+}
+
+/// Changes the vectors of the particles of eight contacts.
+#[inline(always)]
+fn move_by<L: Lane>(
+    token: L::Token,
+    vectors: &mut [Pack4],
+    particles: &[[u32; Pack8::WIDTH]; 4],
+    before: &[V3<L>; 4],
+    by: V3<L>,
+    weights: &[L; 4],
+) {
+    for at in 0..4 {
+        before[at].plus_scaled(by, weights[at]).scatter(token, vectors, &particles[at]);
+    }
+}
+
+/// Stores normals and factors where features face each other.
+#[inline(always)]
+fn keep_where<L: Lane<Pack = Pack8>>(
+    token: L::Token,
+    faces: L::Mask,
+    normal: V3<L>,
+    factors: &[L; 4],
+    pack: &mut ContactPack,
+) {
+    let [no, yes] = [L::splat(token, 0.0), L::splat(token, 1.0)];
+    yes.or_where_not(faces, no).store(&mut pack.faces);
+    normal.or_where_not(faces, V3::load(token, &pack.normal)).store(&mut pack.normal);
+    for (factor, kept) in factors.iter().zip(&mut pack.factors) {
+        factor.or_where_not(faces, L::load(token, kept)).store(kept);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::contact::itself::contact_packs::Packing;
+    use crate::contact::itself::near::ParticleTriangle;
+    use crate::contact::itself::points::{vector, vector_of};
+    use crate::contact::itself::touching::Touching;
+
+    /// A particle lies near a corner of a triangle. Both, and another corner, are a thousand times as heavy as the third corner.
+    #[test]
+    fn a_light_particle_far_from_where_features_touch_is_not_thrown() {
+        const THICKNESS: f32 = 5e-3;
+        let at = [
+            Vec3::new(1e-3, 0.0, 1e-3),
+            Vec3::ZERO,
+            Vec3::new(-0.03, 0.0, 0.03),
+            Vec3::new(0.03, 0.0, 0.03),
+        ];
+        let inverse_masses = [1.0, 1.0, 1.0, 1e3];
+        let end = at.map(vector).to_vec();
+        let mut points = Points { start: end.clone(), end: end.clone(), ..Points::default() };
+        let contact =
+            Touching { particles: [0, 1, 2, 3], distance: THICKNESS, friction: 0.0, passed: 0.0 };
+        let mut packs = Vec::new();
+        Packing::default().pack(&[contact], end.len(), &mut packs);
+        packs[0].read_masses(&inverse_masses);
+        assert!(move_apart::<ParticleTriangle>(&mut packs, &mut points));
+        let way = |(now, before)| vector_of(now).distance(vector_of(before));
+        let moved = points.end.iter().zip(&end).map(way);
+        let farthest = moved.fold(0.0, f32::max);
+        assert!((0.01..1.0).contains(&(farthest / THICKNESS)), "{farthest} m");
     }
 }

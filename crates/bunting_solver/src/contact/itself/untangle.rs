@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::contact::itself::crossing::{Crossing, crossing};
 use crate::contact::itself::mesh::{ContactMesh, Edge};
-use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
+use crate::contact::itself::pairs::EdgeTriangle;
 use crate::contact::itself::particles::{Particles, inverse_mass};
 
 /// Speed at which tangled features come apart, m/s. Smaller: cloth stays tangled for long. Larger: links beside tangled
@@ -16,39 +16,63 @@ const SPEED: f32 = 0.5;
 /// Least cosine between an edge and the normal of the triangle that it passes through, where the gradient is infinite.
 const LEAST_COSINE: f32 = 0.1;
 
-/// The particles of features that pass through one another at the start of a substep.
+/// Features that pass through one another at the start of a substep.
 #[derive(Clone, Debug, Default)]
-pub(in crate::contact) struct Tangles(Vec<bool>);
+pub(in crate::contact) struct Tangles {
+    pairs: Vec<EdgeTriangle>,
+    /// Whether each particle is of such a feature.
+    of_particle: Vec<bool>,
+}
 
 impl Tangles {
     /// None of a cloth's particles.
     #[cfg(test)]
     pub fn of_none(particles: usize) -> Self {
-        Self(vec![false; particles])
+        Self { pairs: Vec::new(), of_particle: vec![false; particles] }
     }
 
     /// Whether any of some particles is of a tangled feature.
     pub fn contain_any(&self, particles: &[u32]) -> bool {
-        particles.iter().any(|&particle| self.0[particle as usize])
+        particles.iter().any(|&particle| self.of_particle[particle as usize])
     }
-}
 
-/// Finds all features that pass through one another at the start of the substep, and moves them.
-pub(in crate::contact) fn untangle(
-    mesh: &ContactMesh,
-    pairs: &Pairs,
-    particles: &mut Particles,
-    step: f32,
-    tangles: &mut Tangles,
-) {
-    tangles.0.clear();
-    tangles.0.resize(particles.start.len(), false);
-    for pair in &pairs.edges_triangles {
-        let Some(crossing) = crossing(pair, &particles.start) else { continue };
-        pair.particles().iter().for_each(|&particle| tangles.0[particle as usize] = true);
-        let edge = &mesh.edges[pair.index as usize];
-        if let Some(direction) = direction(edge, pair.triangle, &particles.start) {
-            push(pair, &crossing, direction * (SPEED * step), particles);
+    /// Marks their particles, which are moved though they have no contacts.
+    pub fn mark_near(&self, is_near: &mut [bool]) {
+        for at in self.pairs.iter().flat_map(EdgeTriangle::particles) {
+            is_near[at as usize] = true;
+        }
+    }
+
+    pub fn is_any(&self) -> bool {
+        !self.pairs.is_empty()
+    }
+
+    /// Forgets all, given the number of particles.
+    pub fn clear(&mut self, particles: usize) {
+        self.pairs.clear();
+        self.of_particle.clear();
+        self.of_particle.resize(particles, false);
+    }
+
+    /// Finds those among pairs that pass through each other, given the positions of all particles at the start of the substep, m.
+    pub fn find(&mut self, pairs: &[EdgeTriangle], starts: &[Vec3]) {
+        self.clear(starts.len());
+        for pair in pairs {
+            if crossing(pair, starts).is_some() {
+                pair.particles().iter().for_each(|&at| self.of_particle[at as usize] = true);
+                self.pairs.push(*pair);
+            }
+        }
+    }
+
+    /// Moves all in a substep of the length `step`, s.
+    pub fn untangle(&self, mesh: &ContactMesh, particles: &mut Particles, step: f32) {
+        for pair in &self.pairs {
+            let Some(crossing) = crossing(pair, &particles.start) else { continue };
+            let edge = &mesh.edges[pair.index as usize];
+            if let Some(direction) = direction(edge, pair.triangle, &particles.start) {
+                push(pair, &crossing, direction * (SPEED * step), particles);
+            }
         }
     }
 }
