@@ -1,5 +1,6 @@
 //! Tests of contacts of cloths with one another.
 
+use std::f32::consts::TAU;
 use std::sync::Arc;
 
 use bunting_solver::{
@@ -219,4 +220,84 @@ fn held_edges_that_cross_leave_cloths_whole() {
         assert!(farthest.iter().all(|it| *it < CROSSING), "tick {tick}: {farthest:?}");
     }
     assert!(farthest.iter().all(|it| *it < APART), "{farthest:?}");
+}
+
+/// A tube with its axis along x from the origin on: some particles around it, some along it, its radius, its length, m, and the particles
+/// that are pinned.
+fn tube(
+    [around, along]: [u32; 2],
+    [radius, length]: [f32; 2],
+    pinned: impl IntoIterator<Item = u32>,
+) -> Arc<Fabric> {
+    let at = |particle: u32| {
+        let angle = TAU * (particle % around) as f32 / around as f32;
+        let x = length * (particle / around) as f32 / (along - 1) as f32;
+        Vec3::new(x, radius * libm::cosf(angle), radius * libm::sinf(angle))
+    };
+    let triangles_of = |square: u32| {
+        let first = square - square % around;
+        let [a, b] = [square, first + (square + 1) % around];
+        let [c, d] = [a + around, b + around];
+        [a, b, c, b, d, c]
+    };
+    let positions = (0..around * along).map(at).collect();
+    let indices = (0..around * (along - 1)).flat_map(triangles_of).collect();
+    Arc::new(FabricBuilder::new(positions, indices).pin(pinned).build().expect("a good fabric"))
+}
+
+/// Greatest length of a link, over that at rest.
+fn longest_link(fabric: &Fabric, at: &[Vec3]) -> f32 {
+    let length = |of: &[Vec3], [a, b]: [u32; 2]| of[a as usize].distance(of[b as usize]);
+    let rest = fabric.rest_positions();
+    let links = fabric.links().iter();
+    links.map(|it| length(at, it.particles) / length(rest, it.particles)).fold(0.0, f32::max)
+}
+
+/// Two sleeves hang such that they pass through each other, and so do their pins, for ever.
+#[test]
+fn sleeves_that_begin_crossed_come_apart_without_shaking() {
+    let fabric = tube([20, 17], [0.08, 0.5], 0..20);
+    let hangs = Quat::from_rotation_z(-0.25 * TAU);
+    let frames = [(Vec3::ZERO, hangs), (Vec3::new(0.15, 0.0, 0.0), hangs)];
+    let sleeve = |(place, turn): (Vec3, Quat)| {
+        let mut start = ClothSnapshot::at_rest(&fabric);
+        start.positions.iter_mut().for_each(|at| *at = place + turn * *at);
+        batch(&(Arc::clone(&fabric), start), FabricMaterial::COTTON, LaneCount::One, (place, turn))
+    };
+    let mut batches = Batches(frames.map(sleeve).into());
+    let members = frames.map(member);
+    let mut group = ClothGroup::default();
+    let (mut fastest, mut last) = (0.0_f32, 0.0);
+    for _ in 0..150 {
+        batches.step(&mut group, &members);
+        let velocities = [0, 1].map(|cloth| batches.0[cloth].snapshot(0).velocities);
+        last = velocities.iter().flatten().map(|it| it.length()).fold(0.0, f32::max);
+        fastest = fastest.max(last);
+    }
+    assert!(fastest < 2.0, "{fastest} m/s");
+    assert!(last < 0.5, "{last} m/s after 2.5 s");
+}
+
+/// A tube hangs at a ring that is drawn through another tube, whose rim it cannot pass without creases.
+#[test]
+fn cloth_that_is_drawn_through_something_narrow_stays_whole() {
+    const SPEED: f32 = 1.0;
+    let outer = tube([24, 21], [0.06, 0.6], (0..24).chain(480..504));
+    let inner = tube([14, 25], [0.03, 0.7], 336..350);
+    let pose = |tick: usize| (Vec3::X * (SPEED * TICK * tick as f32 - 0.75), Quat::IDENTITY);
+    let at_rest = |fabric: &Arc<Fabric>| {
+        let start = ClothSnapshot::at_rest(fabric);
+        batch(&(Arc::clone(fabric), start), FabricMaterial::COTTON, LaneCount::One, HERE)
+    };
+    let mut batches = Batches(vec![at_rest(&outer), at_rest(&inner)]);
+    let mut group = ClothGroup::default();
+    let mut longest = 0.0_f32;
+    for tick in 0..90 {
+        let motion = FrameMotion::between(pose(tick), pose(tick + 1));
+        let drive = Drive { motion, ..Drive::default() };
+        batches.0[1].drive(0, drive).expect("a good drive");
+        batches.step(&mut group, &[member(HERE), GroupMember { motion, ..member(pose(tick)) }]);
+        longest = longest.max(longest_link(&inner, &batches.positions(1)));
+    }
+    assert!(longest < 4.5, "{longest} of the length at rest");
 }

@@ -155,6 +155,11 @@ impl LayerContacts {
         self.tangles.untangle(mesh, &mut self.particles, step);
     }
 
+    /// Stops the motion of such features relative to one another.
+    pub fn stop_tangled(&mut self) {
+        self.tangles.stop(&mut self.particles);
+    }
+
     /// Moves layers apart. Returns whether any were too near.
     pub fn move_apart<R>(&mut self, layers: &Layers<R>, sweeps: usize) -> bool {
         self.contacts.move_apart(&mut self.points, &mut self.particles, sweeps, layers.rate)
@@ -203,6 +208,9 @@ impl LayerContacts {
                 break;
             }
             grew = true;
+        }
+        if grew && zones.draw_out(&layers.mesh.edges, &self.particles) {
+            zones.give_up(&mut self.particles);
         }
         // Features with pins may still pass through one another.
         self.may_be_tangled |= grew || zones.are_given_up();

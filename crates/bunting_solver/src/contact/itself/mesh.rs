@@ -11,6 +11,8 @@ use crate::fabric::Fabric;
 #[derive(Clone, Copy, Debug)]
 pub(in crate::contact) struct Edge {
     pub ends: [u32; 2],
+    /// Length at rest, m.
+    pub length: f32,
     /// The third corner of each triangle beside the edge; none beside a border.
     pub wings: [Option<u32>; 2],
     /// The index of the end that is farther from the border of the cloth, if the border is near.
@@ -52,8 +54,11 @@ impl ContactMesh {
                         Some(&index) => all.edges[index as usize].wings[1] = Some(wing),
                         None => {
                             index_of.insert([from.min(to), from.max(to)], all.edges.len() as u32);
+                            let [one, other] =
+                                [from, to].map(|end| fabric.rest_positions()[end as usize]);
                             all.edges.push(Edge {
                                 ends: [from, to],
+                                length: one.distance(other),
                                 wings: [Some(wing), None],
                                 inner_end: None,
                             });

@@ -2,12 +2,13 @@
 //! displacement (Provot 1997, "Collision and self-collision handling in cloth model dedicated to design garments").
 //!
 //! Particles of features that pass through one another are one zone. A zone that meets further features when it has
-//! returned takes them in, until nothing passes through anything. Zones that have grown too often are given up: features
-//! then pass through one another in this substep, and come apart as tangles do.
+//! returned takes them in, until nothing passes through anything. Zones that have grown too often, or from which cloth is drawn out, are
+//! given up: features then pass through one another in this substep, and come apart as tangles do.
 
 use glam::Vec3;
 
 use crate::contact::itself::crossing::crossing;
+use crate::contact::itself::mesh::Edge;
 use crate::contact::itself::pairs::EdgeTriangle;
 use crate::contact::itself::particles::Particles;
 use crate::contact::itself::untangle::Tangles;
@@ -15,6 +16,10 @@ use crate::contact::itself::untangle::Tangles;
 /// Most times that zones grow. Fewer: features of large piles pass through one another. More: costs more in piles, and
 /// zones as large as the cloth leave its pins behind.
 const GROWTHS: usize = 24;
+
+/// Greatest strain of edges beside zones. Smaller: large piles that hit something pass through one another. Larger: cloth that is drawn through
+/// something narrow is held by its zones, and the more it is drawn out, the more of it passes through something.
+const DRAWN_OUT: f32 = 2.0;
 
 /// Zones of particles, as a forest: each particle has a parent in its zone, the root itself.
 struct Zones(Vec<u32>);
@@ -92,8 +97,19 @@ impl RigidZones {
         self.are_given_up
     }
 
+    /// Whether any edge between a zone and other cloth is drawn out too far.
+    pub fn draw_out(&self, edges: &[Edge], particles: &Particles) -> bool {
+        let Particles { end, touched, .. } = particles;
+        edges.iter().any(|edge| {
+            let [one, other] = edge.ends.map(|end| end as usize);
+            let farthest = (1.0 + DRAWN_OUT) * edge.length;
+            touched[one] != touched[other]
+                && end[one].distance_squared(end[other]) > farthest * farthest
+        })
+    }
+
     /// Puts all particles where they were before any zone returned.
-    fn give_up(&mut self, particles: &mut Particles) {
+    pub fn give_up(&mut self, particles: &mut Particles) {
         particles.end.clone_from(&self.corrected);
         particles.touched.fill(false);
         self.are_given_up = true;
@@ -202,7 +218,7 @@ impl Sums {
 mod tests {
     use glam::Vec3;
 
-    use super::{GROWTHS, RigidZones};
+    use super::{Edge, GROWTHS, RigidZones};
     use crate::contact::itself::pairs::EdgeTriangle;
     use crate::contact::itself::particles::Particles;
     use crate::contact::itself::untangle::Tangles;
@@ -280,5 +296,21 @@ mod tests {
         assert!(zones.are_given_up());
         assert_eq!(particles.end, before);
         assert!(!particles.touched.contains(&true));
+    }
+
+    #[test]
+    fn cloth_is_drawn_out_where_an_edge_beside_a_zone_is_three_times_as_long_as_at_rest() {
+        let mut particles = Particles::default();
+        particles.resize(3);
+        particles.touched[0] = true;
+        let edge =
+            |other| Edge { ends: [0, other], length: 0.1, wings: [None; 2], inner_end: None };
+        particles.end[1] = Vec3::new(0.29, 0.0, 0.0);
+        particles.end[2] = Vec3::new(0.0, 0.31, 0.0);
+        let zones = RigidZones::new(&particles);
+        assert!(!zones.draw_out(&[edge(1)], &particles));
+        assert!(zones.draw_out(&[edge(1), edge(2)], &particles));
+        particles.touched[2] = true;
+        assert!(!zones.draw_out(&[edge(1), edge(2)], &particles));
     }
 }

@@ -29,6 +29,7 @@ impl<R: Rules> Layers<'_, R> {
         for _ in 0..ROUNDS {
             if contacts.meet() {
                 lanes.read_velocities(&mut contacts.particles);
+                contacts.stop_tangled();
                 contacts.separate(self, sweeps);
                 lanes.write(&contacts.particles);
                 contacts.particles.touched.fill(false);

@@ -1,6 +1,7 @@
 //! Edges that pass through triangles at the start of a substep are moved such that the curve in which the cloth intersects
 //! itself becomes shorter (Volino and Magnenat-Thalmann 2006, "Resolving surface collisions through intersection contour
-//! minimization"), or, near a border of the cloth, such that the border returns.
+//! minimization"), or, near a border of the cloth, such that the border returns. Their motion relative to one another is stopped, since what
+//! holds them together, as pins that cross for ever, answers to each of these moves.
 
 use glam::Vec3;
 
@@ -9,9 +10,9 @@ use crate::contact::itself::mesh::{ContactMesh, Edge};
 use crate::contact::itself::pairs::EdgeTriangle;
 use crate::contact::itself::particles::{Particles, inverse_mass};
 
-/// Speed at which tangled features come apart, m/s. Smaller: cloth stays tangled for long. Larger: links beside tangled
-/// features are stretched.
-const SPEED: f32 = 0.5;
+/// Greatest speed at which particles of tangled features come apart, m/s. Smaller: cloth stays tangled for long. Larger: links beside tangled
+/// features are stretched, and cloth whose pins cross shakes.
+const SPEED: f32 = 0.25;
 
 /// Least cosine between an edge and the normal of the triangle that it passes through, where the gradient is infinite.
 const LEAST_COSINE: f32 = 0.1;
@@ -22,13 +23,15 @@ pub(in crate::contact) struct Tangles {
     pairs: Vec<EdgeTriangle>,
     /// Whether each particle is of such a feature.
     of_particle: Vec<bool>,
+    /// Scratch array: positions before particles were moved, m.
+    before: Vec<Vec3>,
 }
 
 impl Tangles {
     /// None of a cloth's particles.
     #[cfg(test)]
     pub fn of_none(particles: usize) -> Self {
-        Self { pairs: Vec::new(), of_particle: vec![false; particles] }
+        Self { of_particle: vec![false; particles], ..Self::default() }
     }
 
     /// Whether any of some particles is of a tangled feature.
@@ -66,13 +69,32 @@ impl Tangles {
     }
 
     /// Moves all in a substep of the length `step`, s.
-    pub fn untangle(&self, mesh: &ContactMesh, particles: &mut Particles, step: f32) {
+    pub fn untangle(&mut self, mesh: &ContactMesh, particles: &mut Particles, step: f32) {
+        if self.pairs.is_empty() {
+            return;
+        }
+        let farthest = SPEED * step;
+        self.before.clone_from(&particles.end);
         for pair in &self.pairs {
-            let Some(crossing) = crossing(pair, &particles.start) else { continue };
             let edge = &mesh.edges[pair.index as usize];
-            if let Some(direction) = direction(edge, pair.triangle, &particles.start) {
-                push(pair, &crossing, direction * (SPEED * step), particles);
+            let direction = direction(edge, pair.triangle, &particles.start);
+            if let Some((meeting, direction)) = Meeting::of(pair, particles).zip(direction) {
+                let Particles { end, inverse_mass, touched, .. } = particles;
+                meeting.push(direction * farthest, inverse_mass, end, touched);
             }
+        }
+        // An edge may pass through many triangles, each of which has pushed it.
+        for (end, before) in particles.end.iter_mut().zip(&self.before) {
+            *end = *before + (*end - before).clamp_length_max(farthest);
+        }
+    }
+
+    /// Stops their motion relative to one another.
+    pub fn stop(&self, particles: &mut Particles) {
+        for pair in &self.pairs {
+            let Some(meeting) = Meeting::of(pair, particles) else { continue };
+            let Particles { velocity, inverse_mass, touched, .. } = particles;
+            meeting.push(-meeting.relative(velocity), inverse_mass, velocity, touched);
         }
     }
 }
@@ -102,14 +124,95 @@ fn direction(edge: &Edge, triangle: [u32; 3], positions: &[Vec3]) -> Option<Vec3
     edge.wings.iter().flatten().filter_map(|&wing| of_wing(wing)).sum::<Vec3>().try_normalize()
 }
 
-/// Moves an edge relative to a triangle, m, by inverse masses.
-fn push(pair: &EdgeTriangle, crossing: &Crossing, by: Vec3, particles: &mut Particles) {
-    let [of_a, of_b, of_c] = crossing.coordinates;
-    let factors = [1.0 - crossing.along, crossing.along, -of_a, -of_b, -of_c];
-    let of_pair = pair.particles().map(|particle| particle as usize);
-    let Some(inverse) = inverse_mass(particles, of_pair.into_iter().zip(factors)) else { return };
-    for (&particle, factor) in of_pair.iter().zip(factors) {
-        particles.end[particle] += by * (particles.inverse_mass[particle] * factor / inverse);
-        particles.touched[particle] = true;
+/// The points of an edge and of a triangle that meet, as sums over the particles of both.
+struct Meeting {
+    particles: [usize; 5],
+    /// Part of each particle in the point of the edge less that of the triangle.
+    factors: [f32; 5],
+    /// Inverse mass of the relative motion, 1/m².
+    inverse_mass: f32,
+}
+
+impl Meeting {
+    /// Where a pair meets at the start of the substep; none if it does not, or is held by pins.
+    fn of(pair: &EdgeTriangle, particles: &Particles) -> Option<Self> {
+        let Crossing { along, coordinates: [of_a, of_b, of_c] } = crossing(pair, &particles.start)?;
+        let factors = [1.0 - along, along, -of_a, -of_b, -of_c];
+        let of_pair = pair.particles().map(|particle| particle as usize);
+        let inverse_mass = inverse_mass(particles, of_pair.into_iter().zip(factors))?;
+        Some(Self { particles: of_pair, factors, inverse_mass })
+    }
+
+    /// The vector of the edge's point less that of the triangle's, given those of all particles.
+    fn relative(&self, vectors: &[Vec3]) -> Vec3 {
+        let terms = self.particles.iter().zip(self.factors);
+        terms.map(|(&particle, factor)| vectors[particle] * factor).sum()
+    }
+
+    /// Changes this by inverse masses, and marks the particles.
+    fn push(&self, by: Vec3, inverse_masses: &[f32], vectors: &mut [Vec3], touched: &mut [bool]) {
+        for (&particle, factor) in self.particles.iter().zip(self.factors) {
+            vectors[particle] += by * (inverse_masses[particle] * factor / self.inverse_mass);
+            touched[particle] = true;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fabric::{FabricBuilder, Grid};
+
+    const STEP: f32 = 1.0 / 120.0;
+
+    /// Two squares of four triangles each that pass through each other, one of which moves.
+    fn tangled() -> (ContactMesh, Particles, Tangles) {
+        let fabric = FabricBuilder::grid(Grid::new(2, 2, 1.0, 1.0)).build().expect("a good grid");
+        let mesh = ContactMesh::of(&fabric);
+        let both = ContactMesh::joined([(&mesh, 4), (&mesh, 4)].into_iter());
+        let mut particles = Particles::default();
+        particles.resize(8);
+        for (at, rest) in fabric.rest_positions().iter().enumerate() {
+            particles.start[at] = *rest;
+            particles.start[4 + at] = Vec3::new(0.45 + 0.1 * rest.y, rest.y + 0.3, rest.x - 0.4);
+            particles.velocity[at] = Vec3::new(1.0, 2.0, 3.0);
+        }
+        particles.end.clone_from(&particles.start);
+        particles.inverse_mass.fill(1.0);
+        let edges = both.edges.iter().map(|edge| edge.ends).enumerate();
+        let triangles = fabric.triangles().iter().flat_map(|it| [*it, it.map(|at| at + 4)]);
+        let pairs: Vec<EdgeTriangle> = edges
+            .flat_map(|(index, edge)| {
+                let index = index as u32;
+                triangles.clone().map(move |triangle| EdgeTriangle { index, edge, triangle })
+            })
+            .filter(|pair| pair.edge.iter().all(|end| !pair.triangle.contains(end)))
+            .collect();
+        let mut tangles = Tangles::default();
+        tangles.find(&pairs, &particles.start);
+        assert!(tangles.pairs.len() > 2, "{} pairs", tangles.pairs.len());
+        (both, particles, tangles)
+    }
+
+    #[test]
+    fn no_particle_comes_apart_faster_than_it_may() {
+        let (mesh, mut particles, mut tangles) = tangled();
+        tangles.untangle(&mesh, &mut particles, STEP);
+        let ways = particles.end.iter().zip(&particles.start).map(|(end, at)| end.distance(*at));
+        let farthest = ways.fold(0.0, f32::max);
+        assert!(farthest > 0.0 && farthest < 1.001 * SPEED * STEP, "{farthest} m");
+    }
+
+    #[test]
+    fn what_is_tangled_does_not_move_relative_to_one_another() {
+        let (_, mut particles, tangles) = tangled();
+        let fastest = |particles: &Particles| {
+            let meetings = tangles.pairs.iter().filter_map(|pair| Meeting::of(pair, particles));
+            let speeds = meetings.map(|it| it.relative(&particles.velocity).length());
+            speeds.fold(0.0, f32::max)
+        };
+        assert!(fastest(&particles) > 3.0);
+        (0..60).for_each(|_| tangles.stop(&mut particles));
+        assert!(fastest(&particles) < 0.01, "{} m/s", fastest(&particles));
     }
 }
