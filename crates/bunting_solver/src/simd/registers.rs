@@ -245,56 +245,31 @@ lanes_of!(Pack4, f32x4, 4, one_by_one);
 lanes_of!(Pack8, f32x8, 8, transposed);
 lanes_of!(Pack16, f32x16, 16, one_by_one);
 
-impl<S: Simd> Mask for fearless_simd::mask32x4<S> {
-    #[inline(always)]
-    fn any(self) -> bool {
-        fearless_simd::SimdMask::any_true(self)
-    }
+/// Implements [`Mask`] for a mask of fearless_simd.
+macro_rules! mask_of_lanes {
+    ($mask:ident) => {
+        impl<S: Simd> Mask for fearless_simd::$mask<S> {
+            #[inline(always)]
+            fn any(self) -> bool {
+                fearless_simd::SimdMask::any_true(self)
+            }
 
-    #[inline(always)]
-    fn all(self) -> bool {
-        fearless_simd::SimdMask::all_true(self)
-    }
+            #[inline(always)]
+            fn all(self) -> bool {
+                fearless_simd::SimdMask::all_true(self)
+            }
 
-    #[inline(always)]
-    fn bits(self) -> u64 {
-        fearless_simd::SimdMask::to_bitmask(self)
-    }
+            #[inline(always)]
+            fn bits(self) -> u64 {
+                fearless_simd::SimdMask::to_bitmask(self)
+            }
+        }
+    };
 }
 
-impl<S: Simd> Mask for fearless_simd::mask32x8<S> {
-    #[inline(always)]
-    fn any(self) -> bool {
-        fearless_simd::SimdMask::any_true(self)
-    }
-
-    #[inline(always)]
-    fn all(self) -> bool {
-        fearless_simd::SimdMask::all_true(self)
-    }
-
-    #[inline(always)]
-    fn bits(self) -> u64 {
-        fearless_simd::SimdMask::to_bitmask(self)
-    }
-}
-
-impl<S: Simd> Mask for fearless_simd::mask32x16<S> {
-    #[inline(always)]
-    fn any(self) -> bool {
-        fearless_simd::SimdMask::any_true(self)
-    }
-
-    #[inline(always)]
-    fn all(self) -> bool {
-        fearless_simd::SimdMask::all_true(self)
-    }
-
-    #[inline(always)]
-    fn bits(self) -> u64 {
-        fearless_simd::SimdMask::to_bitmask(self)
-    }
-}
+mask_of_lanes!(mask32x4);
+mask_of_lanes!(mask32x8);
+mask_of_lanes!(mask32x16);
 
 impl Mask for bool {
     #[inline(always)]

@@ -9,6 +9,8 @@ use bunting_solver::{
 };
 use glam::{Quat, Vec3};
 
+use crate::common::{free_tube, longest_link};
+
 const TICK: f32 = 1.0 / 60.0;
 const SETTINGS: StepSettings = StepSettings { passes: 2, ..StepSettings::yarns(2) };
 /// Distance of cloths, m.
@@ -222,35 +224,16 @@ fn held_edges_that_cross_leave_cloths_whole() {
     assert!(farthest.iter().all(|it| *it < APART), "{farthest:?}");
 }
 
-/// A tube with its axis along x from the origin on: some particles around it, some along it, its radius, its length, m, and the particles
+/// A tube with its axis along x from the origin on: some particles around it, some along it, its radius, its length, m, and the vertices
 /// that are pinned.
 fn tube(
     [around, along]: [u32; 2],
     [radius, length]: [f32; 2],
     pinned: impl IntoIterator<Item = u32>,
 ) -> Arc<Fabric> {
-    let at = |particle: u32| {
-        let angle = TAU * (particle % around) as f32 / around as f32;
-        let x = length * (particle / around) as f32 / (along - 1) as f32;
-        Vec3::new(x, radius * libm::cosf(angle), radius * libm::sinf(angle))
-    };
-    let triangles_of = |square: u32| {
-        let first = square - square % around;
-        let [a, b] = [square, first + (square + 1) % around];
-        let [c, d] = [a + around, b + around];
-        [a, b, c, b, d, c]
-    };
-    let positions = (0..around * along).map(at).collect();
-    let indices = (0..around * (along - 1)).flat_map(triangles_of).collect();
-    Arc::new(FabricBuilder::new(positions, indices).pin(pinned).build().expect("a good fabric"))
-}
-
-/// Greatest length of a link, over that at rest.
-fn longest_link(fabric: &Fabric, at: &[Vec3]) -> f32 {
-    let length = |of: &[Vec3], [a, b]: [u32; 2]| of[a as usize].distance(of[b as usize]);
-    let rest = fabric.rest_positions();
-    let links = fabric.links().iter();
-    links.map(|it| length(at, it.particles) / length(rest, it.particles)).fold(0.0, f32::max)
+    let upright = free_tube(around, radius, along - 1, length);
+    let tube = upright.placed(Quat::from_rotation_z(-0.25 * TAU), Vec3::ZERO).pin(pinned);
+    Arc::new(tube.build().expect("a good fabric"))
 }
 
 /// Two sleeves hang such that they pass through each other, and so do their pins, for ever.

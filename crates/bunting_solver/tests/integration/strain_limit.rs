@@ -9,6 +9,8 @@ use bunting_solver::{
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
 
+use crate::common::longest_link;
+
 const TICK: f32 = 1.0 / 60.0;
 /// Particles of a row and of a column.
 const SIZE: usize = 17;
@@ -36,10 +38,7 @@ fn sheet_of(both: bool, material: FabricMaterial) -> (Arc<Fabric>, ClothBatch) {
 
 /// Greatest length of a link, in lengths at rest.
 fn longest(fabric: &Fabric, batch: &ClothBatch) -> f32 {
-    let positions = batch.snapshot(0).positions;
-    let length = |[from, to]: [u32; 2]| positions[from as usize].distance(positions[to as usize]);
-    let lengths = fabric.links().iter().map(|link| length(link.particles) / link.rest_length);
-    lengths.fold(0.0, f32::max)
+    longest_link(fabric, &batch.snapshot(0).positions)
 }
 
 fn fastest(batch: &ClothBatch) -> f32 {

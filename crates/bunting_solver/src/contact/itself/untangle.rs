@@ -165,7 +165,7 @@ mod tests {
 
     const STEP: f32 = 1.0 / 120.0;
 
-    /// Two squares of four triangles each that pass through each other, one of which moves.
+    /// Two squares that pass through each other, one of which moves.
     fn tangled() -> (ContactMesh, Particles, Tangles) {
         let fabric = FabricBuilder::grid(Grid::new(2, 2, 1.0, 1.0)).build().expect("a good grid");
         let mesh = ContactMesh::of(&fabric);

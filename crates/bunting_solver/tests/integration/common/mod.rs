@@ -2,10 +2,12 @@
 
 mod drives;
 mod irregular;
+mod links;
 mod shells;
 mod trousers;
 
 pub use drives::{drive, material};
 pub use irregular::{irregular, net};
-pub use shells::{hemisphere, sphere, tube, volume};
+pub use links::longest_link;
+pub use shells::{free_tube, hemisphere, sphere, tube, volume};
 pub use trousers::trousers;

@@ -64,6 +64,12 @@ pub fn hemisphere(rings: u32, around: u32, radius: f32) -> FabricBuilder {
 
 /// A tube of a radius and a length along y, m, held at both ends.
 pub fn tube(around: u32, radius: f32, rows: u32, length: f32) -> FabricBuilder {
+    let held = move |at: Vec3, _| at.y <= 0.0 || at.y >= length;
+    free_tube(around, radius, rows, length).pin_where(held)
+}
+
+/// A tube of a radius and a length along y from y = 0 on, m, that nothing holds. Its vertices are in rings from its beginning to its end.
+pub fn free_tube(around: u32, radius: f32, rows: u32, length: f32) -> FabricBuilder {
     let mut positions = Vec::new();
     for row in 0..=rows {
         positions.extend((0..around).map(|at| {
@@ -82,7 +88,7 @@ pub fn tube(around: u32, radius: f32, rows: u32, length: f32) -> FabricBuilder {
             Vec3::Y * (length * (row as f32 + 0.5) / rows as f32),
         );
     }
-    FabricBuilder::new(positions, indices).pin_where(move |at, _| at.y <= 0.0 || at.y >= length)
+    FabricBuilder::new(positions, indices)
 }
 
 /// The volume inside a closed shell, m³.
