@@ -89,6 +89,53 @@ fn all_cloths_together_stay_within_the_budget() {
 }
 
 #[test]
+fn where_there_is_no_time_for_all_cloths_the_smallest_are_held_still() {
+    let (mut app, viewer) = windy();
+    set_pose(&mut app, viewer, Transform::from_xyz(0.0, 0.0, 20.0));
+    let distance = |index: usize| 2.0 * (index % 20) as f32;
+    let cloths: Vec<Entity> = (0..40)
+        .map(|index| {
+            let place = Transform::from_xyz(0.0, 0.0, -distance(index));
+            let attachment = Attachment::in_place(ClothEdge::Left);
+            let mesh = ClothMesh::grid(33, 33, 1.0 + 0.01 * index as f32, 1.0);
+            app.world_mut().spawn((mesh, attachment, LodSet::automatic(3), place)).id()
+        })
+        .collect();
+    let activities = |app: &App| -> Vec<ClothActivity> {
+        cloths.iter().map(|&cloth| state(app, cloth).activity()).collect()
+    };
+    set_budget(&mut app, 90);
+    run(&mut app, 3 * A_WHILE);
+    let now = activities(&app);
+    let still =
+        |now: &[ClothActivity]| now.iter().filter(|it| **it == ClothActivity::OverBudget).count();
+    assert!((10..30).contains(&still(&now)), "{now:?}");
+    assert!(report(&app).expected <= Duration::from_micros(90), "{:?}", report(&app));
+    assert_eq!((report(&app).over_budget, report(&app).asleep()), (still(&now), still(&now)));
+    assert!(report(&app).held_back >= still(&now));
+    let mut nearest = (0..40).filter(|&index| distance(index) < 8.0);
+    assert!(nearest.all(|index| now[index] == ClothActivity::Ticking), "{now:?}");
+    let held = |index: &usize| now[*index] == ClothActivity::OverBudget;
+    let last = (0..40).find(held).expect("one that is still");
+    let shape = bits(&app, cloths[last]);
+    run(&mut app, 1);
+    assert_eq!(bits(&app, cloths[last]), shape);
+    assert_eq!(report(&app).switches, 0, "they take no turns");
+
+    // The radius of a cloth 48 m from the viewer.
+    app.world_mut().resource_mut::<ClothBudget>().still_below = 15.0;
+    run(&mut app, A_WHILE);
+    let fewer = activities(&app);
+    assert!((1..still(&now)).contains(&still(&fewer)), "{fewer:?}");
+    assert!(report(&app).expected > Duration::from_micros(90), "{:?}", report(&app));
+
+    set_budget(&mut app, 3000);
+    run(&mut app, A_WHILE);
+    assert_eq!(still(&activities(&app)), 0);
+    cloths.iter().for_each(|&cloth| assert_finite(&app, cloth));
+}
+
+#[test]
 fn level_changes_are_events_and_few_in_a_tick() {
     let (mut app, viewer) = windy();
     set_pose(&mut app, viewer, Transform::from_xyz(0.0, 0.0, 200.0));

@@ -29,9 +29,9 @@ impl<T: Send + 'static> Background<T> {
         Self { work, task }
     }
 
-    /// Whether the result is ready, so that [`take`](Self::take) does not wait.
+    /// Whether the result is ready, or no thread will make it, so that [`take`](Self::take) does not wait for one.
     pub fn is_done(&self) -> bool {
-        self.task.as_ref().is_some_and(Task::is_finished)
+        self.task.as_ref().is_none_or(Task::is_finished)
     }
 
     /// Returns the result. Work that no thread has begun is done on this thread, since the others may be busy for

@@ -55,7 +55,7 @@ fn bytes_that_are_foreign_damaged_or_of_another_version_are_told() {
     }
     let mut other = bytes.clone();
     other[VERSION] += 1;
-    assert!(matches!(error(&other), SnapshotBytesError::Version { found: 4, expected: 3 }));
+    assert!(matches!(error(&other), SnapshotBytesError::Version { found: 5, expected: 4 }));
     for length in [VERSION + 1, STATE, STATE + 1, bytes.len() / 2, bytes.len() - 1] {
         assert_eq!(error(&bytes[..length]), SnapshotBytesError::Damaged, "{length} bytes");
     }

@@ -41,6 +41,9 @@ pub enum ClothActivity {
     /// The cloth has come to rest. It is simulated again when its frame, its material, the wind, gravity or a
     /// collider near it changes, or when a finer level is wanted.
     AtRest,
+    /// There is no time for the cloth in the [`ClothBudget`](crate::ClothBudget), though all cloths are at their coarsest levels, and it is
+    /// among the smallest in the picture. It is simulated again, first at its coarsest level, when there is.
+    OverBudget,
     /// The mesh of the cloth's `ClothFromMesh`, or the bind poses of its skin, are not loaded yet; with the feature `render`.
     AwaitsAsset,
     /// Another thread is building the fabrics of a cloth that has none yet.

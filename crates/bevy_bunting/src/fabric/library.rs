@@ -37,8 +37,12 @@ const PARTICLES: f32 = 1000.0;
 /// Number of particles of which no fabric is built.
 const MOST_PARTICLES: f32 = 1e6;
 
-/// Number of ticks by which levels may be late where they depend on the machine anyway. Fewer: ticks wait for other
-/// threads on a busy machine. More: cloths appear late there.
+/// The same number for levels that may be late: building takes longer than the cloths of a tick may. Fewer: a single flag of 33 × 33
+/// appears some ticks late without need.
+const ASYNC_VERTICES_LATE: usize = 2048;
+
+/// Number of ticks by which levels may be late where they depend on the machine anyway, after they are due and after the last ones were
+/// taken. Fewer: ticks wait for other threads on a busy machine. More: cloths appear late where threads have no time for them at all.
 const MOST_LATE: u64 = 256;
 
 /// The levels of all cloths in use, by content.
@@ -49,6 +53,8 @@ pub(crate) struct FabricLibrary {
     cutting: HashMap<ContentKey, Cutting>,
     /// Number of ticks so far.
     tick: u64,
+    /// Tick in which levels that were built in the background were last taken.
+    taken: u64,
     /// Number of vertices whose levels are expected in this tick or later.
     expected: usize,
     /// Whether a cloth waits for its levels, or for levels that replace its present ones.
@@ -70,9 +76,10 @@ struct Cutting {
 }
 
 impl Cutting {
-    /// Whether the levels are taken in a tick.
-    fn is_ready(&self, tick: u64, may_be_late: bool) -> bool {
-        let waits = may_be_late && !self.levels.is_done() && tick < self.due + MOST_LATE;
+    /// Whether the levels are taken in a tick, given that in which others were last taken.
+    fn is_ready(&self, tick: u64, taken: u64, may_be_late: bool) -> bool {
+        let latest = self.due.max(taken) + MOST_LATE;
+        let waits = may_be_late && !self.levels.is_done() && tick < latest;
         tick >= self.due && !waits
     }
 }
@@ -104,9 +111,14 @@ impl FabricLibrary {
 
     /// Whether the levels with this key are being built, and expected in a later tick.
     fn is_cutting_key(&self, key: &ContentKey, lods: &LodSet) -> bool {
-        let may_be_late = self.may_be_late && matches!(lods.choice, LodChoice::Automatic { .. });
-        let is_ready = |cutting: &Cutting| cutting.is_ready(self.tick, may_be_late);
+        let may_be_late = self.may_be_late(lods);
+        let is_ready = |cutting: &Cutting| cutting.is_ready(self.tick, self.taken, may_be_late);
         self.cutting.get(key).is_some_and(|cutting| !is_ready(cutting))
+    }
+
+    /// Whether the levels of a cloth may be taken later than they are due.
+    fn may_be_late(&self, lods: &LodSet) -> bool {
+        self.may_be_late && matches!(lods.choice, LodChoice::Automatic { .. })
     }
 
     /// Forgets levels that no cloth has any more. Returns whether there were any.
@@ -176,6 +188,7 @@ impl FabricLibrary {
         }
         let asked = lods.levels();
         if let Some(cutting) = self.cutting.remove(key) {
+            self.taken = self.tick;
             return Some(cutting.levels.take());
         }
         if self.at_once {
@@ -184,7 +197,9 @@ impl FabricLibrary {
         let vertices = work(mesh, &attached, resolution);
         let fits = self.expected == 0 || self.expected + vertices <= VERTICES_PER_TICK;
         // Small cloths are built at once and do not wait for large ones.
-        let is_large = vertices >= ASYNC_VERTICES;
+        let may_be_late = self.may_be_late(lods);
+        let least = if may_be_late { ASYNC_VERTICES_LATE } else { ASYNC_VERTICES };
+        let is_large = vertices >= least;
         let expected = if is_large { vertices } else { self.expected + vertices };
         if !is_large {
             self.expected = expected;
@@ -321,6 +336,21 @@ mod tests {
         assert!((0..8).all(|_| !is_there(1.1)), "no thread has had time for it");
         hogs.iter().for_each(|(go, _)| go.send(()).expect("it waits"));
         assert!((0..2 * MOST_LATE).any(|_| is_there(1.1)));
+    }
+
+    #[test]
+    fn levels_that_may_be_late_are_not_built_in_a_tick_if_that_takes_long() {
+        AsyncComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
+        let is_there = |may_be_late: bool, lods: LodSet| {
+            let mut library = FabricLibrary { may_be_late, ..FabricLibrary::default() };
+            let mesh = ClothMesh::grid(65, 65, 1.0, 1.0);
+            let resolution = (ClothResolution::Auto, &[][..]);
+            let found = library.levels(Entity::PLACEHOLDER, &mesh, None, &lods, resolution);
+            matches!(found, Ok(Found::Levels(_)))
+        };
+        assert!(!is_there(true, LodSet::automatic(2)));
+        assert!(is_there(false, LodSet::automatic(2)), "costs are fixed");
+        assert!(is_there(true, LodSet::default()), "levels are not chosen");
     }
 
     #[test]

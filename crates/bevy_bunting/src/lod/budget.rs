@@ -37,6 +37,10 @@ pub struct ClothBudget {
     /// Greatest number of cloths on a screen that change their level in a tick, unless the budget is exceeded. The same
     /// number of cloths off the screen may change in addition.
     pub switches: usize,
+    /// Radius in the picture, px, below which a cloth may be held still: where there is no time even for all cloths at their
+    /// coarsest levels, the smallest in the picture keep their shape and move rigidly with their frames
+    /// ([`ClothActivity::OverBudget`](crate::ClothActivity::OverBudget)). Zero: none is, and the budget is exceeded.
+    pub still_below: f32,
     /// Angle beside the screen within which cloth is simulated, so that it has settled when it comes into
     /// view, rad.
     pub margin: f32,
@@ -51,6 +55,7 @@ impl Default for ClothBudget {
             coarsen_below: 0.5,
             dwell: 30,
             switches: 1,
+            still_below: 200.0,
             margin: 0.05,
         }
     }

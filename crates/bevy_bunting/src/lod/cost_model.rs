@@ -64,6 +64,7 @@ impl Factor {
 /// Expected costs of batches: the cost in the table times a measured factor for each kind of batch.
 #[derive(Clone, Debug)]
 pub(crate) struct CostModel {
+    /// In the order of their numbers of particles.
     factors: Vec<BatchFactor>,
     /// Measured over tabulated cost of all batches: the factor of batches that were not measured yet.
     general_factor: Factor,
@@ -99,11 +100,11 @@ impl CostModel {
             if by_table <= 0.0 || !time.is_finite() {
                 continue;
             }
-            let known = self.factors.iter().position(|it| it.kind == kind);
-            let index = known.unwrap_or(self.factors.len());
-            if known.is_none() {
-                self.factors.push(BatchFactor { kind, factor: None, sums: [0.0; 2], missed: 0 });
-            }
+            let index = self.index_of(kind).unwrap_or_else(|index| {
+                let new = BatchFactor { kind, factor: None, sums: [0.0; 2], missed: 0 };
+                self.factors.insert(index, new);
+                index
+            });
             let [tabulated, measured] = &mut self.factors[index].sums;
             *tabulated += by_table;
             *measured += time;
@@ -124,6 +125,14 @@ impl CostModel {
         if all[0] > 0.0 {
             self.general_factor.approach(all[1] / all[0]);
         }
+    }
+
+    /// Index of the factor of a kind of batch, or that at which it would have to be inserted.
+    fn index_of(&self, kind: CostKind) -> Result<usize, usize> {
+        let first = self.factors.partition_point(|it| it.kind.particles < kind.particles);
+        let as_large = self.factors[first..].iter();
+        let mut as_large = as_large.take_while(|it| it.kind.particles == kind.particles);
+        as_large.position(|it| it.kind == kind).map(|index| first + index).ok_or(first)
     }
 
     /// Learns from the measured overhead of a tick, µs.
@@ -167,8 +176,8 @@ impl CostModel {
     ) -> BatchCosts {
         let cost = |lanes: LaneCount, mixed: bool| {
             let kind = CostKind { particles, settings, lanes, mixed };
-            let known = self.factors.iter().find(|it| it.kind == kind);
-            let factor = known.and_then(|known| known.factor).unwrap_or(self.general_factor);
+            let known = self.index_of(kind).ok().and_then(|index| self.factors[index].factor);
+            let factor = known.unwrap_or(self.general_factor);
             factor.value * table.batch(kind)
         };
         let one = cost(LaneCount::One, false);

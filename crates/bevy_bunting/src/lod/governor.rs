@@ -2,9 +2,9 @@
 //!
 //! The choice is a pure function of errors, importances and costs: it reads no world and no clock.
 //!
-//! 1. Every cloth starts at its coarsest level. A step to the next finer level, up to the wanted one, reduces
-//!    error and adds cost. Steps are sorted by reduced error over added cost, in buckets, which is linear in
-//!    their number.
+//! 1. Every cloth starts at its coarsest level, or is held still if it is small in the picture. A step to the next finer level, up to the
+//!    wanted one, reduces error and adds cost. Steps are sorted by reduced error over added cost, in buckets, which is linear in
+//!    their number. Those out of stillness come first: a cloth is held still only where there is no time for all coarsest levels.
 //! 2. In that order each step is taken if the sum of costs stays within the budget. Costs are those of
 //!    whole batches: the ninth cloth of a batch of sixteen lanes is free, so a free lane is used by the
 //!    next cloth in the order.
@@ -38,7 +38,7 @@ const ENTERING: f32 = 0.5;
 /// left, a resolution of 1/16.
 const BUCKET_SHIFT: u32 = 19;
 
-/// Number of buckets for all positive floats.
+/// Number of buckets for all positive floats. Steps out of stillness have as many before those of all others.
 const BUCKETS: usize = 1 << (31 - BUCKET_SHIFT);
 
 /// The chosen changes of level.
@@ -130,22 +130,22 @@ impl Governor {
         self.steps.clear();
         self.wanted.clear();
         for (index, cloth) in cloths.iter().enumerate() {
-            let errors = &tables[cloth.table as usize].errors;
+            let table = &tables[cloth.table as usize];
             if cloth.fixed {
                 self.wanted.push(cloth.level);
                 continue;
             }
-            let wanted = cloth.wanted_level(errors, limits);
-            let coarsest = errors.len() as u32 - 1;
+            let wanted = cloth.wanted_level(table, limits);
             self.wanted.push(wanted);
             let value_of_metre = cloth.pixels_per_metre * cloth.importance;
-            for to in (wanted..coarsest).rev() {
+            for to in (wanted..cloth.last_level(table)).rev() {
                 let factor = if cloth.level <= to { PRESENT_LEVEL_FACTOR } else { 1.0 };
                 let step = self.step_values[self.first_values[cloth.table as usize] + to as usize];
                 let value = value_of_metre * step * factor;
                 // No error is reduced, but a metre is worth more than any number: that is no number.
                 let value = if value > 0.0 { value.min(f32::MAX) } else { 0.0 };
-                let bucket = BUCKETS as u32 - 1 - (value.to_bits() >> BUCKET_SHIFT);
+                let first = if to == table.coarsest() { 0 } else { BUCKETS as u32 };
+                let bucket = first + BUCKETS as u32 - 1 - (value.to_bits() >> BUCKET_SHIFT);
                 self.steps.push(Step { cloth: index as u32, to, bucket });
             }
         }
@@ -174,10 +174,10 @@ impl Governor {
         }
     }
 
-    /// Takes steps in their order, starting from every cloth's coarsest level, within a budget (µs).
+    /// Takes steps in their order, starting from every cloth's last level, within a budget (µs).
     fn take_steps(&mut self, tables: &[LevelTable], cloths: &[Candidate], budget: f32) {
-        let coarsest = |cloth: &Candidate| tables[cloth.table as usize].errors.len() as u32 - 1;
-        let first = |cloth: &Candidate| if cloth.fixed { cloth.level } else { coarsest(cloth) };
+        let last = |cloth: &Candidate| cloth.last_level(&tables[cloth.table as usize]);
+        let first = |cloth: &Candidate| if cloth.fixed { cloth.level } else { last(cloth) };
         self.chosen.clear();
         self.chosen.extend(cloths.iter().map(first));
         let mut cost = self.counts.count(tables, cloths, self.chosen.iter().copied());
@@ -206,7 +206,7 @@ impl Governor {
     }
 
     /// Starts cloths that have not been simulated yet: at the chosen level while the budget has room for it,
-    /// otherwise at the coarsest, since other cloths become coarser only gradually. Returns the cost, µs.
+    /// otherwise at the last, since other cloths become coarser only gradually. Returns the cost, µs.
     fn start_fresh(
         &mut self,
         tables: &[LevelTable],
@@ -215,16 +215,16 @@ impl Governor {
         mut cost: f32,
     ) -> f32 {
         let is_fresh = |cloth: &Candidate| cloth.fresh && !cloth.fixed;
-        let coarsest = |cloth: &Candidate| tables[cloth.table as usize].errors.len() as u32 - 1;
+        let last = |cloth: &Candidate| cloth.last_level(&tables[cloth.table as usize]);
         for cloth in cloths.iter().filter(|cloth| is_fresh(cloth)) {
-            let to = coarsest(cloth);
+            let to = last(cloth);
             if cloth.level != to {
                 cost += self.counts.difference(tables, cloth.table, cloth.level, to);
                 self.counts.shift(tables, cloth.table, cloth.level, to);
             }
         }
         for (index, cloth) in cloths.iter().enumerate().filter(|(_, cloth)| is_fresh(cloth)) {
-            let (from, mut to) = (coarsest(cloth), self.chosen[index]);
+            let (from, mut to) = (last(cloth), self.chosen[index]);
             if from != to {
                 let more = self.counts.difference(tables, cloth.table, from, to);
                 let entering = ENTERING * tables[cloth.table as usize].costs[to as usize].change;
@@ -286,12 +286,15 @@ impl Governor {
             }
         }
         for step in &self.sorted {
-            let (cloth, to) = (&cloths[step.cloth as usize], self.chosen[step.cloth as usize]);
+            let (cloth, chosen) = (&cloths[step.cloth as usize], self.chosen[step.cloth as usize]);
+            // A cloth that has been held still is simulated at its coarsest level first.
+            let to =
+                if step.to == tables[cloth.table as usize].coarsest() { step.to } else { chosen };
             let left = &mut left[usize::from(cloth.on_screen)];
             // Each cloth is considered once, at the step from its present level, and may change by several
             // levels.
             let may = cloth.ready && !cloth.fresh;
-            if step.to + 1 != cloth.level || to >= cloth.level || !may || *left == 0 {
+            if step.to + 1 != cloth.level || chosen >= cloth.level || !may || *left == 0 {
                 continue;
             }
             let more = self.counts.difference(tables, cloth.table, cloth.level, to);

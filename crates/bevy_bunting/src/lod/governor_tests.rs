@@ -17,7 +17,7 @@ fn table() -> LevelTable {
         per_cloth: 0.0,
         change: 0.0,
     });
-    LevelTable { errors: vec![0.001, 0.01, 0.02, 0.04], costs: costs.to_vec(), owners: vec![0; 4] }
+    LevelTable::new(vec![0.001, 0.01, 0.02, 0.04], costs.to_vec(), vec![0; 4], 1.0)
 }
 
 fn cloth(level: u32, pixels_per_metre: f32) -> Candidate {
@@ -29,6 +29,7 @@ fn cloth(level: u32, pixels_per_metre: f32) -> Candidate {
         ready: true,
         fresh: false,
         fixed: false,
+        may_be_still: false,
         on_screen: true,
     }
 }
@@ -62,8 +63,7 @@ fn with_time_to_spare_each_cloth_has_its_wanted_level() {
 
 #[test]
 fn a_step_without_gain_has_no_worth_however_near_the_cloth() {
-    let LevelTable { costs, owners, .. } = table();
-    let alike = LevelTable { errors: vec![0.01; 4], costs, owners };
+    let alike = LevelTable { errors: vec![0.01; 5], ..table() };
     let endless = Candidate { importance: f32::INFINITY, ..cloth(3, 1e9) };
     let choice = Governor::default().choose(&[alike], &[endless], &LIMITS).clone();
     assert_eq!(choice.switches, [(0, 0)]);
@@ -243,4 +243,34 @@ fn fluctuating_costs_change_nothing() {
 fn no_cloths_cost_nothing() {
     let choice = Governor::default().choose(&[], &[], &LIMITS).clone();
     assert_eq!(choice, Choice::default());
+}
+
+#[test]
+fn a_cloth_is_held_still_only_where_there_is_no_time_for_all_coarsest_levels() {
+    let small = |pixels: f32| Candidate { may_be_still: true, ..cloth(3, pixels) };
+    // Three batches of sixteen lanes, 6.25 µs each, at the coarsest level.
+    let mut cloths: Vec<Candidate> = (0..48).map(|index| small(100.0 - index as f32)).collect();
+    let limits = |budget: f32| Limits { budget, ..LIMITS };
+    settle(&mut cloths, &limits(19.0));
+    assert_eq!(levels(&cloths), [3; 48]);
+    let choice = settle(&mut cloths, &limits(13.0));
+    assert!(choice.cost <= 13.0);
+    let still = |cloths: &[Candidate]| -> Vec<usize> {
+        (0..cloths.len()).filter(|&index| cloths[index].level == 4).collect()
+    };
+    assert_eq!(still(&cloths), (32..48).collect::<Vec<_>>(), "the smallest");
+    assert_eq!(choice.held_back, 48);
+
+    // What may not be still is not, though it is smaller.
+    cloths.iter_mut().for_each(|cloth| cloth.level = 3);
+    cloths[47].may_be_still = false;
+    settle(&mut cloths, &limits(13.0));
+    assert_eq!(still(&cloths), (31..47).collect::<Vec<_>>());
+
+    // New cloths do not begin before there is time for them.
+    cloths.iter_mut().for_each(|cloth| (cloth.level, cloth.fresh) = (3, true));
+    let choice = Governor::default().choose(&[table()], &cloths, &limits(13.0)).clone();
+    assert!(choice.switches.iter().filter(|(_, to)| *to == 4).count() >= 15, "{choice:?}");
+    settle(&mut cloths, &limits(1000.0));
+    assert!(still(&cloths).is_empty());
 }

@@ -124,7 +124,7 @@ mod tests {
             per_cloth: 0.0,
             change: 0.0,
         });
-        LevelTable { errors: vec![0.01, 0.02], costs: costs.to_vec(), owners: vec![owner; 2] }
+        LevelTable::new(vec![0.01, 0.02], costs.to_vec(), vec![owner; 2], 1.0)
     }
 
     fn cloths(tables: [u32; 6]) -> Vec<Candidate> {
@@ -136,6 +136,7 @@ mod tests {
             ready: true,
             fresh: false,
             fixed: false,
+            may_be_still: false,
             on_screen: true,
         };
         tables.map(cloth).to_vec()

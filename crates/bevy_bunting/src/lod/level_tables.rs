@@ -1,5 +1,6 @@
 //! Level tables: errors, costs and sizes of the levels of all cloths that share their fabrics.
 
+use std::collections::HashMap;
 use std::sync::{Arc, Weak};
 
 use bunting_solver::{EffortClass, Fabric, LaneCount, Scheme, StepSettings};
@@ -28,14 +29,22 @@ struct Work {
     pool: Option<u32>,
 }
 
+/// The work of a level.
+#[derive(Clone, Copy, Debug)]
+struct WorkOfLevel {
+    work: Work,
+    /// Index of its costs.
+    kind: usize,
+}
+
 /// One table for each [`ClothLevels`] in use and each class of effort of its cloths.
 #[derive(Debug, Default)]
 pub(crate) struct LevelTables {
     /// Work of each level; empty while it is unknown.
-    work: Vec<Vec<Work>>,
+    work: Vec<Vec<WorkOfLevel>>,
     /// Length of the ticks for which the work is known, s.
     tick: f32,
-    /// Costs of each kind of work in this tick.
+    /// Costs of each kind of work.
     costs: Vec<(Work, BatchCosts)>,
     levels: Vec<(Weak<ClothLevels>, EffortClass)>,
     /// Number of particles at each level.
@@ -71,11 +80,12 @@ impl LevelTables {
         // The middle particle may differ from level to level.
         let radius = fabrics().map(|fabric| rest_radius(fabric)).fold(0.0, f32::max);
         self.radii[index] = STRETCH * radius;
-        self.tables[index] = LevelTable {
-            errors: fabrics().map(|fabric| level_error(fabric)).collect(),
-            costs: vec![Default::default(); levels.count()],
-            owners: vec![index as u32; levels.count()],
-        };
+        self.tables[index] = LevelTable::new(
+            fabrics().map(|fabric| level_error(fabric)).collect(),
+            vec![Default::default(); levels.count()],
+            vec![index as u32; levels.count()],
+            radius,
+        );
         index
     }
 
@@ -104,12 +114,12 @@ impl LevelTables {
         self.radii[table]
     }
 
-    /// Number of particles of a table's cloths at a level.
-    pub fn particles(&self, table: usize, level: usize) -> usize {
-        self.particles[table][level]
+    /// Number of particles of a table's cloths at a level; none if they are held still.
+    pub fn particles(&self, table: usize, level: usize) -> Option<usize> {
+        self.particles[table].get(level).copied()
     }
 
-    /// Updates all costs. With `fixed` costs sixteen lanes are assumed, whatever the machine's width. Cloths
+    /// Updates all costs, once their work is known. With `fixed` costs sixteen lanes are assumed, whatever the machine's width. Cloths
     /// of different fabrics have few different sizes, so that few costs are computed.
     pub fn update_costs(
         &mut self,
@@ -120,16 +130,13 @@ impl LevelTables {
     ) {
         let machine = if fixed { LaneCount::Sixteen } else { LaneCount::widest() };
         let widest = widest.map_or(machine, |widest| widest.min(machine));
-        self.costs.clear();
+        for (work, costs) in &mut self.costs {
+            let Work { particles, step, most_single, pool, .. } = *work;
+            *costs = model.costs(table, particles, step, widest, most_single, pool);
+        }
         for (levels, table_of_costs) in self.work.iter().zip(&mut self.tables) {
-            for (work, cost) in levels.iter().zip(&mut table_of_costs.costs) {
-                let known = self.costs.iter().find(|(known, _)| known == work);
-                *cost = known.map(|(_, cost)| *cost).unwrap_or_else(|| {
-                    let Work { particles, step, most_single, pool, .. } = *work;
-                    let new = model.costs(table, particles, step, widest, most_single, pool);
-                    self.costs.push((*work, new));
-                    new
-                });
+            for (level, costs) in levels.iter().zip(&mut table_of_costs.costs) {
+                *costs = self.costs[level.kind].1;
             }
         }
     }
@@ -156,7 +163,9 @@ impl LevelTables {
                     Some(_) => 0,
                 };
                 let topology = fabric.topology().filter(|_| step.scheme == Scheme::Yarns);
-                Work { particles: fabric.particle_count(), step, most_single, topology, pool: None }
+                let particles = fabric.particle_count();
+                let work = Work { particles, step, most_single, topology, pool: None };
+                WorkOfLevel { work, kind: 0 }
             };
             work.extend((0..levels.count()).map(work_of));
             is_new = true;
@@ -164,44 +173,64 @@ impl LevelTables {
         if is_new {
             self.find_owners();
             self.number_pools();
+            self.find_kinds();
         }
     }
 
     /// Finds the tables that count the cloths of each level: the first of the same fabrics with the same substeps.
     fn find_owners(&mut self) {
+        let mut of_fabrics: HashMap<usize, Vec<usize>> = HashMap::new();
         for index in 0..self.tables.len() {
-            let levels = self.levels[index].0.as_ptr();
-            let same =
-                (0..index).filter(|&other| core::ptr::eq(self.levels[other].0.as_ptr(), levels));
-            let same: Vec<usize> = same.collect();
-            for (level, work) in self.work[index].iter().enumerate() {
+            let same = of_fabrics.entry(self.levels[index].0.as_ptr().addr()).or_default();
+            for (level, WorkOfLevel { work, .. }) in self.work[index].iter().enumerate() {
                 let shares = |other: &&usize| {
-                    self.work[**other].get(level).is_some_and(|other| other.step == work.step)
+                    self.work[**other].get(level).is_some_and(|it| it.work.step == work.step)
                 };
                 let owner = same.iter().find(shares).copied().unwrap_or(index);
                 self.tables[index].owners[level] = owner as u32;
             }
+            same.push(index);
         }
     }
 
     /// Numbers the topologies, with settings, of more than one fabric.
     fn number_pools(&mut self) {
-        let mut pools: Vec<(u64, StepSettings, u32)> = Vec::new();
+        // For each topology its settings, each with the number of its pool and that of its fabrics.
+        let mut pools: HashMap<u64, Vec<(StepSettings, u32, u32)>> = HashMap::new();
+        let mut count = 0;
         for numbers in [false, true] {
             let in_use = (0..self.tables.len()).filter(|&it| self.levels[it].0.strong_count() > 0);
             for index in in_use {
-                for (work, &owner) in self.work[index].iter_mut().zip(&self.tables[index].owners) {
+                let levels = self.work[index].iter_mut().zip(&self.tables[index].owners);
+                for (WorkOfLevel { work, .. }, &owner) in levels {
                     let Some(topology) = work.topology else { continue };
-                    let is_of =
-                        |pool: &(u64, StepSettings, u32)| (pool.0, pool.1) == (topology, work.step);
-                    match pools.iter().position(is_of) {
-                        Some(pool) if numbers => {
-                            work.pool = (pools[pool].2 > 1).then_some(pool as u32);
+                    let of_topology = pools.entry(topology).or_default();
+                    match of_topology.iter_mut().find(|(step, ..)| *step == work.step) {
+                        Some((_, pool, fabrics)) if numbers => {
+                            work.pool = (*fabrics > 1).then_some(*pool);
                         }
-                        Some(pool) => pools[pool].2 += u32::from(owner as usize == index),
-                        None => pools.push((topology, work.step, 1)),
+                        Some((.., fabrics)) => *fabrics += u32::from(owner as usize == index),
+                        None => {
+                            of_topology.push((work.step, count, 1));
+                            count += 1;
+                        }
                     }
                 }
+            }
+        }
+    }
+
+    /// Finds the levels of equal work, whose costs are computed once.
+    fn find_kinds(&mut self) {
+        let mut of_size: HashMap<usize, Vec<usize>> = HashMap::new();
+        self.costs.clear();
+        for WorkOfLevel { work, kind } in self.work.iter_mut().flatten() {
+            let kinds = of_size.entry(work.particles).or_default();
+            let known = kinds.iter().copied().find(|&kind| self.costs[kind].0 == *work);
+            *kind = known.unwrap_or(self.costs.len());
+            if known.is_none() {
+                kinds.push(*kind);
+                self.costs.push((*work, BatchCosts::default()));
             }
         }
     }

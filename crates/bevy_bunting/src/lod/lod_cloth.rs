@@ -43,10 +43,21 @@ impl LodClothItem<'_, '_> {
             self.instance.activity == ClothActivity::Ticking && !self.paused
         } else {
             // The record tells the same, and lies in the cache.
-            self.record.candidate.is_some()
+            self.record.candidate.is_some() && self.record.activity == ClothActivity::Ticking
         };
         if is_simulated && self.effort.update(&self.instance, &self.frame, tick) {
             self.instance.set_changed();
+        }
+    }
+
+    /// Holds the cloth still in tick `now`, or simulates it again. `level` is its level to the governor.
+    pub fn hold_still(&mut self, is_still: bool, level: u32, now: u32) {
+        let activity = if is_still { ClothActivity::OverBudget } else { ClothActivity::Ticking };
+        self.instance.activity = activity;
+        self.record.activity = activity;
+        self.record.changed = now;
+        if let Some(candidate) = &mut self.record.candidate {
+            candidate.level = level;
         }
     }
 
@@ -130,7 +141,9 @@ impl LodClothItem<'_, '_> {
         let old = self.instance.activity;
         let is_overdue = now.wrapping_sub(self.record.seen) > ASLEEP_AFTER;
         let new = match (old, unseen) {
-            (ClothActivity::Ticking, Some(unseen)) if is_overdue => unseen,
+            (ClothActivity::Ticking | ClothActivity::OverBudget, Some(unseen)) if is_overdue => {
+                unseen
+            }
             (ClothActivity::OffScreen | ClothActivity::OutOfRange, Some(unseen)) => unseen,
             (ClothActivity::OffScreen | ClothActivity::OutOfRange, None) => ClothActivity::Ticking,
             (ClothActivity::AtRest, None) if wants_finer => ClothActivity::Ticking,

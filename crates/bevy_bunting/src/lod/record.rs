@@ -53,7 +53,13 @@ impl LodRecord {
         saved: &SavedRecord,
         now: u32,
     ) -> Self {
-        let candidate = saved.candidate.map(|it| Candidate { table: table as u32, ..it });
+        // The last one is that of a cloth that is held still.
+        let level = |level: u32| level.min(levels.count() as u32);
+        let candidate = saved.candidate.map(|it| Candidate {
+            table: table as u32,
+            level: level(it.level),
+            ..it
+        });
         Self {
             candidate,
             activity: saved.activity,

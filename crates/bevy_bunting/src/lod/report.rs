@@ -32,6 +32,9 @@ pub struct LodReport {
     pub hidden: usize,
     /// Number of cloths that sleep because they have come to rest.
     pub at_rest: usize,
+    /// Number of cloths that are held still because there is no time for them even at their coarsest levels, see
+    /// [`ClothBudget::still_below`](crate::ClothBudget::still_below). They are held back, too.
+    pub over_budget: usize,
     /// Number of cloths, simulated or asleep, that have fewer levels than their [`LodSet`](crate::LodSet)s ask for: grids
     /// that cannot be halved so often, meshes with hardly any triangle left to remove, and meshes that would lose all
     /// attached vertices. The log names each such mesh once.
@@ -42,7 +45,7 @@ impl LodReport {
     /// Number of cloths that sleep.
     #[must_use]
     pub fn asleep(&self) -> usize {
-        self.off_screen + self.out_of_range + self.hidden + self.at_rest
+        self.off_screen + self.out_of_range + self.hidden + self.at_rest + self.over_budget
     }
 
     /// Number of cloths that take more substeps than their weight needs.
@@ -58,6 +61,7 @@ impl LodReport {
             ClothActivity::OutOfRange => self.out_of_range += 1,
             ClothActivity::Hidden => self.hidden += 1,
             ClothActivity::AtRest => self.at_rest += 1,
+            ClothActivity::OverBudget => self.over_budget += 1,
             // Neither is asleep.
             ClothActivity::AwaitsAsset
             | ClothActivity::AwaitsFabric

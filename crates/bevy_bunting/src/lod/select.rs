@@ -139,10 +139,22 @@ pub(crate) fn select_levels(
 
     for (index, to) in choice.switches {
         if let Ok(mut cloth) = cloths.get_mut(selector.entities[index]) {
-            counts.0[cloth.instance.level] -= 1;
-            counts.add(to);
-            let on_screen = selector.candidates[index].on_screen;
-            selector.change(&mut cloth, to, on_screen, &mut batches, &mut commands);
+            let candidate = selector.candidates[index];
+            let still = selector.tables.tables[candidate.table as usize].still();
+            let was_still = cloth.record.activity == ClothActivity::OverBudget;
+            let is_still = to as u32 == still;
+            report.over_budget += usize::from(is_still);
+            report.over_budget -= usize::from(was_still);
+            if !was_still {
+                counts.0[candidate.level as usize] -= 1;
+            }
+            if was_still || is_still {
+                cloth.hold_still(is_still, to as u32, selector.tick);
+            }
+            if !is_still {
+                counts.add(to);
+                selector.change(&mut cloth, to, candidate.on_screen, &mut batches, &mut commands);
+            }
         }
     }
 }
@@ -283,15 +295,25 @@ impl LevelSelector {
             ready: false,
             fresh: cloth.instance.unmoved,
             fixed: sighting.is_none() || cloth.instance.lods.pinned.is_some() || is_taking_up,
+            may_be_still: false,
             on_screen,
         };
+        let pixels = candidate.pixels_per_metre * cloth.record.radius;
+        candidate.may_be_still = !candidate.fixed && pixels < examination.budget.still_below;
+        if cloth.instance.activity == ClothActivity::OverBudget && !candidate.may_be_still {
+            cloth.hold_still(false, to as u32, self.tick);
+        }
         if let Some(sighting) = sighting.filter(|_| !cloth.paused && !is_taking_up) {
             let sight = sighting.sight;
             self.update_activity(cloth, &mut candidate, sight, examination, batches, commands);
         }
         cloth.record.activity = cloth.instance.activity;
-        let is_simulated = cloth.instance.activity == ClothActivity::Ticking && !cloth.paused;
-        cloth.record.candidate = is_simulated.then_some(candidate);
+        let is_still = cloth.instance.activity == ClothActivity::OverBudget;
+        if is_still {
+            candidate.level = self.tables.tables[table].still();
+        }
+        let is_simulated = cloth.instance.activity == ClothActivity::Ticking;
+        cloth.record.candidate = ((is_simulated || is_still) && !cloth.paused).then_some(candidate);
     }
 
     /// Sends a cloth to sleep or wakes it. Off the screen it changes to its coarsest level, which takes the
@@ -305,10 +327,10 @@ impl LevelSelector {
         batches: &mut ClothBatches,
         commands: &mut Commands,
     ) {
-        let errors = &self.tables.tables[candidate.table as usize].errors;
+        let table = &self.tables.tables[candidate.table as usize];
         let wants_finer = !candidate.fixed
-            && candidate.wanted_level(errors, &examination.limits) < candidate.level;
-        let coarsest = cloth.instance.lods.pinned.unwrap_or(errors.len() - 1);
+            && candidate.wanted_level(table, &examination.limits) < candidate.level;
+        let coarsest = cloth.instance.lods.pinned.unwrap_or(table.coarsest() as usize);
         let wakes = cloth.update_activity(sight, wants_finer, self.tick);
         if wakes || cloth.instance.activity == ClothActivity::OffScreen {
             self.change(cloth, coarsest, candidate.on_screen, batches, commands);
@@ -352,12 +374,17 @@ impl LevelSelector {
         report.fewer_levels += usize::from(cloth.record.has_fewer_levels);
         if let Some(candidate) = cloth.record.candidate {
             let ready = self.tick.wrapping_sub(cloth.record.changed) > dwell;
+            let is_still = cloth.record.activity == ClothActivity::OverBudget;
             // A cloth that has been simulated since counts as changed when it is at rest again.
-            let fresh = candidate.fresh && cloth.instance.unmoved;
+            let fresh = candidate.fresh && cloth.instance.unmoved && !is_still;
             self.candidates.push(Candidate { ready, fresh, ..candidate });
             self.entities.push(cloth.entity);
-            counts.add(candidate.level as usize);
-            report.efforts[cloth.effort.class().index()] += 1;
+            if is_still {
+                report.count(ClothActivity::OverBudget);
+            } else {
+                counts.add(candidate.level as usize);
+                report.efforts[cloth.effort.class().index()] += 1;
+            }
         } else if cloth.record.activity != ClothActivity::Ticking {
             report.count(cloth.record.activity);
         } else if cloth.paused && cloth.instance.levels.is_some() {
@@ -374,7 +401,7 @@ impl LevelSelector {
         let particles = self
             .candidates
             .iter()
-            .map(|it| self.tables.particles(it.table as usize, it.level as usize));
+            .filter_map(|it| self.tables.particles(it.table as usize, it.level as usize));
         self.overhead = CostModel::tabulated_overhead(table, particles);
         self.has_fresh = self.candidates.iter().any(|it| it.fresh);
         self.governor.choose(&self.tables.tables, &self.candidates, limits).clone()

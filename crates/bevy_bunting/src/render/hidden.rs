@@ -18,7 +18,9 @@ pub fn hide_cloths(
 ) {
     for (entity, mut instance) in &mut cloths {
         let becomes = match (is_hidden(entity, &all), instance.activity) {
-            (true, ClothActivity::Ticking | ClothActivity::AtRest) => ClothActivity::Hidden,
+            (true, ClothActivity::Ticking | ClothActivity::AtRest | ClothActivity::OverBudget) => {
+                ClothActivity::Hidden
+            }
             (false, ClothActivity::Hidden) => ClothActivity::Ticking,
             _ => continue,
         };

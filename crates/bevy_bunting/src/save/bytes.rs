@@ -9,7 +9,7 @@ use crate::save::cloth::ClothSnapshot;
 use crate::save::world::ClothWorldSnapshot;
 
 /// Version of the format. It grows with every change of what is saved, so that bytes of another version are known.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// The first bytes of the snapshot of a cloth.
 const CLOTH: [u8; 8] = *b"BuntingC";

@@ -4,6 +4,7 @@ use bevy_bunting::ClothSystems;
 use bunting_solver::instruction_set;
 
 use super::{
+    different::Different,
     distance::AtDistance,
     kernels::Kernels,
     many_flags::ManyFlags,
@@ -105,6 +106,36 @@ pub fn spawning_table(spawning: &Spawning) -> Table {
         title: "200 different flags spawned at once, through the plugin".into(),
         headers: vec!["", ""],
         rows: rows.into_iter().map(|(name, value)| vec![name.into(), value]).collect(),
+    }
+}
+
+/// Table of the costs of different meshes.
+#[must_use]
+pub fn different_table(different: &[Different]) -> Table {
+    let row = |it: &Different| {
+        let all = it.seconds_to_all.map_or("never".into(), figure);
+        let [simulated, still] = it.simulated_and_still;
+        vec![
+            it.meshes.to_string(),
+            figure(it.ms_budget),
+            it.ms_building.map(figure).join("; "),
+            all,
+            it.ms.map(figure).join("; "),
+            format!("{simulated:.0}; {still:.0}"),
+        ]
+    };
+    Table {
+        name: "budget_different".into(),
+        title: "Different meshes before a camera that moves, through the plugin".into(),
+        headers: vec![
+            "meshes",
+            "budget, ms",
+            "while they are built, ms: 95 %; slowest",
+            "all are built after, s",
+            "later, ms: median; 95 %",
+            "simulated; held still",
+        ],
+        rows: different.iter().map(row).collect(),
     }
 }
 

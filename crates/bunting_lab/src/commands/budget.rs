@@ -5,14 +5,16 @@ use serde_json::json;
 
 use super::progress;
 use crate::{
-    budget::{distance, kernels, many_flags, parts, phases, plots, spawning, tables, thousand},
+    budget::{
+        different, distance, kernels, many_flags, parts, phases, plots, spawning, tables, thousand,
+    },
     effort::Effort,
     output::Outcome,
     settings::{scheme_name, schemes},
 };
 
 /// Number of measurements other than [`many_flags`].
-const OTHERS: usize = 6;
+const OTHERS: usize = 7;
 
 /// Measures many flags at once, flags at a distance, the phases and parts of a tick, kernels, and a
 /// thousand flags under levels of detail.
@@ -39,6 +41,9 @@ pub fn run(quick: bool) -> Outcome {
     bar.inc(1);
     bar.set_message("spawning");
     let spawning = spawning::measure(quick);
+    bar.inc(1);
+    bar.set_message("different meshes");
+    let different = different::measure(quick);
     bar.finish_and_clear();
     let mut all_plots: Vec<_> = schemes()
         .map(scheme_name)
@@ -56,6 +61,7 @@ pub fn run(quick: bool) -> Outcome {
             "kernels": kernels,
             "thousand": thousand,
             "spawning": spawning,
+            "different": different,
         }),
         tables: vec![
             tables::eight_flags_table(&many_flags),
@@ -63,6 +69,7 @@ pub fn run(quick: bool) -> Outcome {
             tables::part_table(&parts),
             tables::thousand_table(&thousand),
             tables::spawning_table(&spawning),
+            tables::different_table(&different),
             tables::many_flags_table(&many_flags),
             tables::phase_table(&phases),
             tables::kernel_table(&kernels),
