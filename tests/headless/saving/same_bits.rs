@@ -71,6 +71,14 @@ fn with_skins() {
 }
 
 #[test]
+fn held_still_for_want_of_time() {
+    for updates in [30, 50, 70] {
+        let trace = goes_on(scenes::little_time, updates);
+        assert!(trace.has(ClothActivity::OverBudget) && trace.has(ClothActivity::Ticking));
+    }
+}
+
+#[test]
 fn with_levels() {
     for updates in [30, 50, 70] {
         let levels = goes_on(scenes::levels, updates).levels();

@@ -1,6 +1,7 @@
 //! Scenes of all that a tick reads.
 
 use std::f32::consts::PI;
+use std::time::Duration;
 
 use bevy_bunting::prelude::*;
 use bevy_bunting::{ClothSurface, CostTable, LodCosts};
@@ -144,6 +145,13 @@ pub fn levels(app: &mut AppWithIds) -> Vec<Entity> {
         app.spawn((FLAG, levels, held, place, ClothSurface::default()))
     });
     flags.collect()
+}
+
+/// The same in less time than the coarsest levels take: flags are held still until the viewer is near, or the others have left the picture.
+pub fn little_time(app: &mut AppWithIds) -> Vec<Entity> {
+    let flags = levels(app);
+    app.world_mut().resource_mut::<ClothBudget>().tick = Duration::from_micros(30);
+    flags
 }
 
 /// Sheets that fall on one another and on themselves.

@@ -1,7 +1,6 @@
 //! Levels that another thread is building.
 
-/// Everything that the levels of a cloth depend on, bit for bit; each list after its length.
-pub(super) type ContentKey = Vec<u32>;
+use crate::fabric::content_key::ContentKey;
 
 /// Levels that a cloth waits for.
 #[derive(Clone, Debug)]

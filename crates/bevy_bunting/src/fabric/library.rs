@@ -13,7 +13,8 @@ use crate::cloth::regions::{add_key, check_regions};
 use crate::cloth::resolution::ClothResolution;
 use crate::cloth::weights::check_weights;
 use crate::fabric::attached::Attached;
-use crate::fabric::awaited::{AwaitedLevels, ContentKey};
+use crate::fabric::awaited::AwaitedLevels;
+use crate::fabric::content_key::ContentKey;
 use crate::fabric::cut::cut_levels;
 use crate::fabric::levels::ClothLevels;
 use crate::fabric::refusal::refusal;
@@ -267,7 +268,7 @@ fn content_key(
         }
     }
     attached.add_key(&mut key);
-    key
+    key.into()
 }
 
 #[cfg(test)]

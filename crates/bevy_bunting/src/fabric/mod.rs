@@ -3,6 +3,7 @@
 pub mod at_once;
 pub(crate) mod attached;
 pub mod awaited;
+mod content_key;
 pub mod cut;
 pub mod held;
 pub(crate) mod known_level;
