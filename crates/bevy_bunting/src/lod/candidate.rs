@@ -103,9 +103,4 @@ impl Candidate {
         }
         level
     }
-
-    /// The last level that the governor may choose.
-    pub fn last_level(&self, table: &LevelTable) -> u32 {
-        if self.may_be_still { table.still() } else { table.coarsest() }
-    }
 }

@@ -2,7 +2,8 @@
 //!
 //! The choice is a pure function of errors, importances and costs: it reads no world and no clock.
 //!
-//! 1. Every cloth starts at its coarsest level, or is held still if it is small in the picture. A step to the next finer level, up to the
+//! 1. Every cloth starts at its coarsest level. Where these fill the budget, those that are small in the picture start one level behind it, at which they
+//!    are held still. A step to the next finer level, up to the
 //!    wanted one, reduces error and adds cost. Steps are sorted by reduced error over added cost, in buckets, which is linear in
 //!    their number. Those out of stillness come first: a cloth is held still only where there is no time for all coarsest levels.
 //! 2. In that order each step is taken if the sum of costs stays within the budget. Costs are those of
@@ -77,6 +78,8 @@ pub(crate) struct Governor {
     step_values: Vec<f32>,
     /// Index in `step_values` of each table's finest level.
     first_values: Vec<usize>,
+    /// Whether cloths may be held still in this tick.
+    may_hold: bool,
     choice: Choice,
 }
 
@@ -89,10 +92,14 @@ impl Governor {
         limits: &Limits,
     ) -> &Choice {
         self.value_steps(tables);
-        self.collect_steps(tables, cloths, limits);
-        self.sort_steps();
-        self.take_steps(tables, cloths, limits.budget);
         let most = MOST_RESERVED * limits.budget;
+        let is_still = |cloth: &Candidate| cloth.level == tables[cloth.table as usize].still();
+        self.may_hold = cloths.iter().any(is_still);
+        let coarsest = self.order_and_take_steps(tables, cloths, limits);
+        if !self.may_hold && coarsest > limits.budget - most {
+            self.may_hold = true;
+            self.order_and_take_steps(tables, cloths, limits);
+        }
         // The next tick may bring more new cloths, and changes of these. Levels that leave no room for them would be
         // given up again.
         let has_fresh = cloths.iter().any(|cloth| cloth.fresh);
@@ -102,6 +109,24 @@ impl Governor {
         }
         self.switch(tables, cloths, limits, reserve);
         &self.choice
+    }
+
+    /// Takes the steps of all cloths within the budget, in the order of their values. Returns the cost of all last levels, µs.
+    fn order_and_take_steps(
+        &mut self,
+        tables: &[LevelTable],
+        cloths: &[Candidate],
+        limits: &Limits,
+    ) -> f32 {
+        self.collect_steps(tables, cloths, limits);
+        self.sort_steps();
+        self.take_steps(tables, cloths, limits.budget)
+    }
+
+    /// The last level that may be chosen for a cloth.
+    fn last_level(&self, tables: &[LevelTable], cloth: &Candidate) -> u32 {
+        let table = &tables[cloth.table as usize];
+        if self.may_hold && cloth.may_be_still { table.still() } else { table.coarsest() }
     }
 
     /// Computes the value of the step to each level. A step is never worth more than the step before it, so
@@ -138,7 +163,7 @@ impl Governor {
             let wanted = cloth.wanted_level(table, limits);
             self.wanted.push(wanted);
             let value_of_metre = cloth.pixels_per_metre * cloth.importance;
-            for to in (wanted..cloth.last_level(table)).rev() {
+            for to in (wanted..self.last_level(tables, cloth)).rev() {
                 let factor = if cloth.level <= to { PRESENT_LEVEL_FACTOR } else { 1.0 };
                 let step = self.step_values[self.first_values[cloth.table as usize] + to as usize];
                 let value = value_of_metre * step * factor;
@@ -174,13 +199,16 @@ impl Governor {
         }
     }
 
-    /// Takes steps in their order, starting from every cloth's last level, within a budget (µs).
-    fn take_steps(&mut self, tables: &[LevelTable], cloths: &[Candidate], budget: f32) {
-        let last = |cloth: &Candidate| cloth.last_level(&tables[cloth.table as usize]);
-        let first = |cloth: &Candidate| if cloth.fixed { cloth.level } else { last(cloth) };
+    /// Takes steps in their order, starting from every cloth's last level, within a budget (µs). Returns the cost of all last
+    /// levels, µs.
+    fn take_steps(&mut self, tables: &[LevelTable], cloths: &[Candidate], budget: f32) -> f32 {
         self.chosen.clear();
-        self.chosen.extend(cloths.iter().map(first));
-        let mut cost = self.counts.count(tables, cloths, self.chosen.iter().copied());
+        for cloth in cloths {
+            let last = self.last_level(tables, cloth);
+            self.chosen.push(if cloth.fixed { cloth.level } else { last });
+        }
+        let last = self.counts.count(tables, cloths, self.chosen.iter().copied());
+        let mut cost = last;
         for step in &self.sorted {
             let index = step.cloth as usize;
             if self.chosen[index] != step.to + 1 {
@@ -197,6 +225,7 @@ impl Governor {
         }
         let pairs = self.chosen.iter().zip(&self.wanted);
         self.choice.held_back = pairs.filter(|(chosen, wanted)| chosen > wanted).count();
+        last
     }
 
     /// The greatest cost of any change that is due, µs.
@@ -215,16 +244,15 @@ impl Governor {
         mut cost: f32,
     ) -> f32 {
         let is_fresh = |cloth: &Candidate| cloth.fresh && !cloth.fixed;
-        let last = |cloth: &Candidate| cloth.last_level(&tables[cloth.table as usize]);
         for cloth in cloths.iter().filter(|cloth| is_fresh(cloth)) {
-            let to = last(cloth);
+            let to = self.last_level(tables, cloth);
             if cloth.level != to {
                 cost += self.counts.difference(tables, cloth.table, cloth.level, to);
                 self.counts.shift(tables, cloth.table, cloth.level, to);
             }
         }
         for (index, cloth) in cloths.iter().enumerate().filter(|(_, cloth)| is_fresh(cloth)) {
-            let (from, mut to) = (last(cloth), self.chosen[index]);
+            let (from, mut to) = (self.last_level(tables, cloth), self.chosen[index]);
             if from != to {
                 let more = self.counts.difference(tables, cloth.table, from, to);
                 let entering = ENTERING * tables[cloth.table as usize].costs[to as usize].change;
