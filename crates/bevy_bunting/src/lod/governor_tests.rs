@@ -267,6 +267,12 @@ fn a_cloth_is_held_still_only_where_there_is_no_time_for_all_coarsest_levels() {
     settle(&mut cloths, &limits(13.0));
     assert_eq!(still(&cloths), (31..47).collect::<Vec<_>>());
 
+    // A near cloth is not refined at the price of one that stops.
+    let mut with_a_near_one: Vec<Candidate> = (0..65).map(|_| small(100.0)).collect();
+    with_a_near_one.push(cloth(3, 2000.0));
+    settle(&mut with_a_near_one, &limits(37.0));
+    assert_eq!(levels(&with_a_near_one), [3; 66]);
+
     // New cloths do not begin before there is time for them.
     cloths.iter_mut().for_each(|cloth| (cloth.level, cloth.fresh) = (3, true));
     let choice = Governor::default().choose(&[table()], &cloths, &limits(13.0)).clone();
