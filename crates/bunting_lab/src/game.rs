@@ -1,11 +1,14 @@
 //! A Bevy app that contains only cloth, set up as in a game.
 
-use std::time::Duration;
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
 
 use bevy_app::{App, TaskPoolPlugin};
 use bevy_bunting::{
-    Attachment, ClothEdge, ClothMaterial, ClothMesh, ClothPlugins, ClothSettings, LodSet,
-    WindField, bunting_solver::StepSettings,
+    Attachment, ClothEdge, ClothMaterial, ClothMesh, ClothPlugins, ClothSettings, ClothState,
+    ClothTimings, LodSet, WindField, bunting_solver::StepSettings,
 };
 use bevy_ecs::{
     entity::Entity,
@@ -69,6 +72,21 @@ pub fn spawn_flag(app: &mut App, n: u32, at: Vec3, lods: LodSet) -> Entity {
         lods,
     );
     app.world_mut().spawn(flag).id()
+}
+
+/// Updates an app, and waits until a tick has passed since. Returns the time that the plugin's tick took, s.
+pub fn update_in_real_time(app: &mut App) -> f64 {
+    let due = Instant::now() + Duration::from_secs_f32(product::TICK);
+    app.update();
+    thread::sleep(due.saturating_duration_since(Instant::now()));
+    app.world().resource::<ClothTimings>().total().as_secs_f64()
+}
+
+/// Number of cloths whose fabrics have been built.
+pub fn built(app: &mut App) -> usize {
+    let world = app.world_mut();
+    let mut states = world.query::<&ClothState>();
+    states.iter(world).filter(|state| !state.positions().is_empty()).count()
 }
 
 /// Updates apps in turn, so that what else the machine does slows all of them. Returns for each app what `time` reads after each

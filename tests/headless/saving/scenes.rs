@@ -147,7 +147,7 @@ pub fn levels(app: &mut AppWithIds) -> Vec<Entity> {
     flags.collect()
 }
 
-/// The same in less time than the coarsest levels take: flags are held still until the viewer is near, or the others have left the picture.
+/// The scene of [`levels`] with a budget below the cost of all coarsest levels: some flags are held still.
 pub fn little_time(app: &mut AppWithIds) -> Vec<Entity> {
     let flags = levels(app);
     app.world_mut().resource_mut::<ClothBudget>().tick = Duration::from_micros(30);

@@ -24,6 +24,10 @@ use crate::lod::lod_set::{LodChoice, LodSet};
 /// longer than a tick then. Fewer: cloths appear some ticks late without need.
 const ASYNC_VERTICES: usize = 8192;
 
+/// The same number for levels that may be late: building takes longer than the cloths of a tick may. Fewer: a single flag of 33 × 33
+/// appears some ticks late without need.
+const ASYNC_VERTICES_LATE: usize = 2048;
+
 /// Number of vertices, over all different cloths, whose fabrics are expected to be built in a tick: a flag of
 /// 33 × 33 with its levels takes some milliseconds. Larger: ticks wait for other threads. Smaller: many new
 /// cloths appear late without need.
@@ -37,10 +41,6 @@ const PARTICLES: f32 = 1000.0;
 
 /// Number of particles of which no fabric is built.
 const MOST_PARTICLES: f32 = 1e6;
-
-/// The same number for levels that may be late: building takes longer than the cloths of a tick may. Fewer: a single flag of 33 × 33
-/// appears some ticks late without need.
-const ASYNC_VERTICES_LATE: usize = 2048;
 
 /// Number of ticks by which levels may be late where they depend on the machine anyway, after they are due and after the last ones were
 /// taken. Fewer: ticks wait for other threads on a busy machine. More: cloths appear late where threads have no time for them at all.

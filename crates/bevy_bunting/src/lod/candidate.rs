@@ -84,10 +84,10 @@ impl Candidate {
     /// easing nor conserved momentum.
     pub fn cost_of_change(&self, tables: &[LevelTable], to: u32) -> f32 {
         let table = &tables[self.table as usize];
-        let to = to.min(table.coarsest());
-        let finer = &table.costs[self.level.min(to) as usize];
-        let changes = self.level.min(table.coarsest()) != to;
-        if self.on_screen && !self.fresh && changes { finer.change } else { 0.0 }
+        // A cloth that is held still keeps its state.
+        let [from, to] = [self.level, to].map(|level| level.min(table.coarsest()));
+        let finer = &table.costs[from.min(to) as usize];
+        if self.on_screen && !self.fresh && from != to { finer.change } else { 0.0 }
     }
 
     /// The level that the errors of all levels demand: the present one as long as its error is not too

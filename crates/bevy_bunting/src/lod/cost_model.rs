@@ -64,7 +64,7 @@ impl Factor {
 /// Expected costs of batches: the cost in the table times a measured factor for each kind of batch.
 #[derive(Clone, Debug)]
 pub(crate) struct CostModel {
-    /// In the order of their numbers of particles.
+    /// In ascending order of their numbers of particles.
     factors: Vec<BatchFactor>,
     /// Measured over tabulated cost of all batches: the factor of batches that were not measured yet.
     general_factor: Factor,

@@ -2,10 +2,10 @@
 //!
 //! The choice is a pure function of errors, importances and costs: it reads no world and no clock.
 //!
-//! 1. Every cloth starts at its coarsest level. Where these fill the budget, those that are small in the picture start one level behind it, at which they
-//!    are held still. A step to the next finer level, up to the
-//!    wanted one, reduces error and adds cost. Steps are sorted by reduced error over added cost, in buckets, which is linear in
-//!    their number. Those out of stillness come first: a cloth is held still only where there is no time for all coarsest levels.
+//! 1. Every cloth starts at its coarsest level. Where these fill the budget, cloths that are small in the picture start one level behind it,
+//!    at which they are held still. A step to the next finer level, up to the wanted one, reduces error and adds cost. Steps are sorted by
+//!    reduced error over added cost, in buckets, which is linear in their number. Steps from held still to the coarsest level come
+//!    first: a cloth is held still only where there is no time for all coarsest levels.
 //! 2. In that order each step is taken if the sum of costs stays within the budget. Costs are those of
 //!    whole batches: the ninth cloth of a batch of sixteen lanes is free, so a free lane is used by the
 //!    next cloth in the order.
@@ -39,7 +39,7 @@ const ENTERING: f32 = 0.5;
 /// left, a resolution of 1/16.
 const BUCKET_SHIFT: u32 = 19;
 
-/// Number of buckets for all positive floats. Steps out of stillness have as many before those of all others.
+/// Number of buckets for all positive floats. Steps from held still to the coarsest level have as many, before those of all other steps.
 const BUCKETS: usize = 1 << (31 - BUCKET_SHIFT);
 
 /// The chosen changes of level.
@@ -93,13 +93,10 @@ impl Governor {
     ) -> &Choice {
         self.value_steps(tables);
         let most = MOST_RESERVED * limits.budget;
-        let is_still = |cloth: &Candidate| cloth.level == tables[cloth.table as usize].still();
-        self.may_hold = cloths.iter().any(is_still);
-        let coarsest = self.order_and_take_steps(tables, cloths, limits);
-        if !self.may_hold && coarsest > limits.budget - most {
-            self.may_hold = true;
-            self.order_and_take_steps(tables, cloths, limits);
-        }
+        self.may_hold = self.lacks_time(tables, cloths, limits.budget - most);
+        self.collect_steps(tables, cloths, limits);
+        self.sort_steps();
+        self.take_steps(tables, cloths, limits.budget);
         // The next tick may bring more new cloths, and changes of these. Levels that leave no room for them would be
         // given up again.
         let has_fresh = cloths.iter().any(|cloth| cloth.fresh);
@@ -111,16 +108,13 @@ impl Governor {
         &self.choice
     }
 
-    /// Takes the steps of all cloths within the budget, in the order of their values. Returns the cost of all last levels, µs.
-    fn order_and_take_steps(
-        &mut self,
-        tables: &[LevelTable],
-        cloths: &[Candidate],
-        limits: &Limits,
-    ) -> f32 {
-        self.collect_steps(tables, cloths, limits);
-        self.sort_steps();
-        self.take_steps(tables, cloths, limits.budget)
+    /// Whether cloths are held still, or all coarsest levels exceed a budget (µs).
+    fn lacks_time(&mut self, tables: &[LevelTable], cloths: &[Candidate], budget: f32) -> bool {
+        let table = |cloth: &Candidate| &tables[cloth.table as usize];
+        let coarsest =
+            |cloth: &Candidate| if cloth.fixed { cloth.level } else { table(cloth).coarsest() };
+        cloths.iter().any(|cloth| cloth.level == table(cloth).still())
+            || self.counts.count(tables, cloths, cloths.iter().map(coarsest)) > budget
     }
 
     /// The last level that may be chosen for a cloth.
@@ -199,16 +193,14 @@ impl Governor {
         }
     }
 
-    /// Takes steps in their order, starting from every cloth's last level, within a budget (µs). Returns the cost of all last
-    /// levels, µs.
-    fn take_steps(&mut self, tables: &[LevelTable], cloths: &[Candidate], budget: f32) -> f32 {
+    /// Takes steps in their order, starting from every cloth's last level, within a budget (µs).
+    fn take_steps(&mut self, tables: &[LevelTable], cloths: &[Candidate], budget: f32) {
         self.chosen.clear();
         for cloth in cloths {
             let last = self.last_level(tables, cloth);
             self.chosen.push(if cloth.fixed { cloth.level } else { last });
         }
-        let last = self.counts.count(tables, cloths, self.chosen.iter().copied());
-        let mut cost = last;
+        let mut cost = self.counts.count(tables, cloths, self.chosen.iter().copied());
         for step in &self.sorted {
             let index = step.cloth as usize;
             if self.chosen[index] != step.to + 1 {
@@ -225,7 +217,6 @@ impl Governor {
         }
         let pairs = self.chosen.iter().zip(&self.wanted);
         self.choice.held_back = pairs.filter(|(chosen, wanted)| chosen > wanted).count();
-        last
     }
 
     /// The greatest cost of any change that is due, µs.

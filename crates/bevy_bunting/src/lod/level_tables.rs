@@ -33,7 +33,7 @@ struct Work {
 #[derive(Clone, Copy, Debug)]
 struct WorkOfLevel {
     work: Work,
-    /// Index of its costs.
+    /// Index of its costs among those of all kinds of work.
     kind: usize,
 }
 

@@ -51,7 +51,7 @@ impl LodClothItem<'_, '_> {
     }
 
     /// Holds the cloth still in tick `now`, or simulates it again. `level` is its level to the governor.
-    pub fn hold_still(&mut self, is_still: bool, level: u32, now: u32) {
+    pub fn set_still(&mut self, is_still: bool, level: u32, now: u32) {
         let activity = if is_still { ClothActivity::OverBudget } else { ClothActivity::Ticking };
         self.instance.activity = activity;
         self.record.activity = activity;

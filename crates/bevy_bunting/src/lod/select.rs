@@ -149,7 +149,7 @@ pub(crate) fn select_levels(
                 counts.0[candidate.level as usize] -= 1;
             }
             if was_still || is_still {
-                cloth.hold_still(is_still, to as u32, selector.tick);
+                cloth.set_still(is_still, to as u32, selector.tick);
             }
             if !is_still {
                 counts.add(to);
@@ -286,22 +286,23 @@ impl LevelSelector {
         self.change(cloth, to, on_screen, batches, commands);
         // Errors of levels are those of their fabrics.
         let size = cloth.instance.growth.end();
+        let pixels_per_metre =
+            sighting.map_or(0.0, |it| it.pixels_per_metre * size * cloth.instance.lods.bias);
+        let fixed = sighting.is_none() || cloth.instance.lods.pinned.is_some() || is_taking_up;
+        let is_small = pixels_per_metre * cloth.record.radius < examination.budget.still_below;
         let mut candidate = Candidate {
             table: table as u32,
             level: to as u32,
-            pixels_per_metre: sighting
-                .map_or(0.0, |it| it.pixels_per_metre * size * cloth.instance.lods.bias),
+            pixels_per_metre,
             importance: sighting.map_or(0.0, |it| importance(&it, cloth.radius())),
             ready: false,
             fresh: cloth.instance.unmoved,
-            fixed: sighting.is_none() || cloth.instance.lods.pinned.is_some() || is_taking_up,
-            may_be_still: false,
+            fixed,
+            may_be_still: is_small && !fixed,
             on_screen,
         };
-        let pixels = candidate.pixels_per_metre * cloth.record.radius;
-        candidate.may_be_still = !candidate.fixed && pixels < examination.budget.still_below;
         if cloth.instance.activity == ClothActivity::OverBudget && !candidate.may_be_still {
-            cloth.hold_still(false, to as u32, self.tick);
+            cloth.set_still(false, to as u32, self.tick);
         }
         if let Some(sighting) = sighting.filter(|_| !cloth.paused && !is_taking_up) {
             let sight = sighting.sight;

@@ -1,19 +1,14 @@
 //! Two hundred flags of different sizes, spawned at once in front of a camera: each needs a fabric of its
 //! own.
 
-use std::{
-    thread,
-    time::{Duration, Instant},
-};
-
 use bevy_app::App;
 use bevy_bunting::{Attachment, ClothEdge, ClothMesh};
-use bevy_bunting::{ClothBudget, ClothState, ClothTimings, LodSet, LodViewer};
+use bevy_bunting::{ClothBudget, LodSet, LodViewer};
 use bevy_transform::components::Transform;
 use glam::Vec3;
 use serde::Serialize;
 
-use crate::{game, product::TICK, scenes::TICK_RATE, settings::steps_of_levels, timing::Timing};
+use crate::{game, scenes::TICK_RATE, settings::steps_of_levels, timing::Timing};
 
 /// Number of flags.
 const FLAGS: usize = 200;
@@ -55,18 +50,15 @@ pub fn measure(quick: bool) -> Spawning {
     let ticks = TICK_RATE as usize * if quick { QUICK_SECONDS } else { SECONDS };
     let (mut times, mut ms_first, mut seconds_to_all) = (Timing::default(), 0.0, None);
     for tick in 0..ticks {
-        let due = Instant::now() + Duration::from_secs_f32(TICK);
-        app.update();
-        let time = app.world().resource::<ClothTimings>().total().as_secs_f64();
+        let time = game::update_in_real_time(&mut app);
         if tick == 0 {
             ms_first = time * 1e3;
         } else {
             times.push(time * 1e6);
         }
-        if seconds_to_all.is_none() && simulated(&mut app) == FLAGS {
+        if seconds_to_all.is_none() && game::built(&mut app) == FLAGS {
             seconds_to_all = Some((tick + 1) as f64 / f64::from(TICK_RATE));
         }
-        thread::sleep(due.saturating_duration_since(Instant::now()));
     }
     Spawning {
         ms_budget: app.world().resource::<ClothBudget>().tick.as_secs_f64() * 1e3,
@@ -88,10 +80,4 @@ fn spawn_flags(app: &mut App) {
         let held = Attachment::in_place(ClothEdge::Left);
         app.world_mut().spawn((mesh, held, LodSet::automatic(LEVELS), place));
     }
-}
-
-fn simulated(app: &mut App) -> usize {
-    let world = app.world_mut();
-    let mut states = world.query::<&ClothState>();
-    states.iter(world).filter(|state| !state.positions().is_empty()).count()
 }
