@@ -5,6 +5,7 @@
 
 pub mod durations;
 mod example;
+mod figure;
 pub mod headless;
 pub mod limits;
 mod options;

@@ -3,39 +3,17 @@
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 
-use crate::scenes::cape::skeleton::{ANKLE, Joint, LEG, Side};
-
-/// A capsule on a bone.
-struct Part {
-    joint: Joint,
-    /// Ends at rest, in the figure's frame, m.
-    ends: [Vec3; 2],
-    /// m.
-    radius: f32,
-}
+use crate::figure::part::Part;
+use crate::figure::skeleton::{ANKLE, Joint, LEG, Side};
 
 /// Distance that the cape keeps from the body, m: between two particles, cloth cuts as deep into a forearm.
 const MARGIN: f32 = 0.008;
 
-impl Part {
-    fn new(joint: Joint, from: impl Into<Vec3>, to: impl Into<Vec3>, radius: f32) -> Self {
-        Self { joint, ends: [from.into(), to.into()], radius }
-    }
-
-    /// Pose of the capsule in the frame of its joint, m.
-    fn pose(&self) -> Transform {
-        let [from, to] = self.ends;
-        let along = Quat::from_rotation_arc(Vec3::Y, (to - from).normalize());
-        Transform::from_translation(from.midpoint(to) - self.joint.place()).with_rotation(along)
-    }
-
-    fn collider(&self) -> ClothCollider {
-        let half_length = 0.5 * self.ends[0].distance(self.ends[1]);
-        ClothCollider {
-            margin: MARGIN,
-            features: true,
-            ..ClothCollider::capsule(half_length, self.radius)
-        }
+fn collider(part: &Part) -> ClothCollider {
+    ClothCollider {
+        margin: MARGIN,
+        features: true,
+        ..ClothCollider::capsule(part.half_length(), part.radius)
     }
 }
 
@@ -61,6 +39,6 @@ fn parts() -> Vec<Part> {
 pub fn spawn(commands: &mut Commands, joints: &[Entity]) {
     for part in parts() {
         let joint = joints[part.joint.index()];
-        commands.spawn((part.collider(), part.pose(), ChildOf(joint)));
+        commands.spawn((collider(&part), part.pose(), ChildOf(joint)));
     }
 }

@@ -8,8 +8,8 @@ use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 use bunting_scenes::{Design, Model};
 
-use crate::scenes::cape::cloak::CRIMSON;
-use crate::scenes::cape::walker::Walker;
+use crate::figure::cloak::CRIMSON;
+use crate::figure::walker::Walker;
 
 /// The file.
 const FILE: &str = "cloths/caped_figure.gltf";

@@ -4,14 +4,15 @@
 //! figure, made here.
 
 mod body;
-mod cloak;
 #[cfg(feature = "render")]
 mod file;
-mod gait;
 mod measure;
-mod skeleton;
-mod walker;
+mod way;
 
+use crate::figure::follow::follow;
+use crate::figure::walker::Walker;
+use crate::figure::way::go;
+use crate::figure::{cloak, pose, skeleton};
 use crate::limits::{Limit, LimitRecord};
 #[cfg(feature = "render")]
 use crate::render::{print, stage};
@@ -26,6 +27,9 @@ const EYE: Vec3 = Vec3::new(2.6, 1.5, 2.9);
 
 /// The point at which the viewer looks, seen from the figure's feet, m.
 const CENTRE: Vec3 = Vec3::new(0.0, 0.9, 0.25);
+
+/// Particles along each edge of the cape: 625 in all.
+const COUNT: u32 = 25;
 
 /// Limit of the mean strain of the cape: larger strain would be visible.
 const STRAIN_LIMIT: f32 = 0.03;
@@ -45,7 +49,8 @@ impl Example for Cape {
     const SECONDS: f64 = 14.0;
 
     fn build(&self, app: &mut App, schedule: impl ScheduleLabel) {
-        app.add_systems(schedule, (gait::go, gait::bend, follow).chain());
+        app.insert_resource(way::WAY);
+        app.add_systems(schedule, (go, pose::bend, follow(EYE)).chain());
         let view = Transform::from_translation(EYE).looking_at(CENTRE, Vec3::Y);
         app.world_mut().spawn((LodViewer::default(), view));
         #[cfg(feature = "render")]
@@ -54,9 +59,9 @@ impl Example for Cape {
             return;
         }
         let mut commands = app.world_mut().commands();
-        let joints = skeleton::spawn(&mut commands);
+        let joints = skeleton::spawn(&mut commands, Walker::default());
         body::spawn(&mut commands, &joints);
-        cloak::spawn(&mut commands, &joints);
+        cloak::spawn(&mut commands, &joints, COUNT);
     }
 
     fn record(&self, _ticks_per_second: usize) -> impl Record {
@@ -76,16 +81,6 @@ impl Example for Cape {
     #[cfg(feature = "render")]
     fn control(&self, app: &mut App) {
         app.add_plugins(crate::render::keys::gizmos);
-    }
-}
-
-/// Keeps the viewer beside the figure.
-fn follow(
-    figure: Single<&Transform, (With<walker::Walker>, Without<LodViewer>)>,
-    mut viewers: Query<&mut Transform, With<LodViewer>>,
-) {
-    for mut viewer in &mut viewers {
-        viewer.translation = figure.translation * Vec3::new(1.0, 0.0, 1.0) + EYE;
     }
 }
 

@@ -15,6 +15,10 @@ pub struct Walker {
     pub phase: f32,
     /// m/s.
     pub speed: f32,
+    /// How far it sits, from 0 to 1.
+    pub sit: f32,
+    /// Angle by which the arms are held farther from the body than those of a figure in few clothes, rad.
+    pub spread: f32,
 }
 
 impl Walker {

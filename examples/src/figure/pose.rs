@@ -1,30 +1,18 @@
-//! The figure's way and gait.
+//! The figure's poses.
 
-use std::f32::consts::{FRAC_PI_2, PI, TAU};
+use std::f32::consts::PI;
 
 use bevy::prelude::*;
 
-use crate::scenes::cape::skeleton::{ANKLE, Joint, LEG, Side};
-use crate::scenes::cape::walker::{RUN, WALK, Walker};
+use crate::figure::skeleton::{ANKLE, Joint, LEG, Side};
+use crate::figure::walker::Walker;
 
 /// Height of the hips in a run, and the amplitude by which they bob, m.
 const RUN_HEIGHT: f32 = 0.91;
 const BOB: f32 = 0.03;
 
-/// Changes of speed: the time at which each begins, s, its duration, s, and the speed that it adds, m/s.
-const CHANGES: [[f32; 3]; 3] = [[1.5, 0.7, WALK], [6.5, 1.0, RUN - WALK], [11.0, 0.9, -RUN]];
-
-/// Turns: the time at which each begins, s, its duration, s, and its angle to the left, rad.
-const TURNS: [[f32; 3]; 3] = [[3.8, 1.2, FRAC_PI_2], [8.6, 0.9, -FRAC_PI_2], [12.4, 0.7, PI * 0.6]];
-
-/// The sum of changes up to a time, each smooth.
-fn sum(changes: &[[f32; 3]], time: f32) -> f32 {
-    let part = |&[begin, duration, by]: &[f32; 3]| {
-        let part = ((time - begin) / duration).clamp(0.0, 1.0);
-        by * part * part * (3.0 - 2.0 * part)
-    };
-    changes.iter().map(part).sum()
-}
+/// Angle of the thighs of a figure that sits, rad.
+const SEATED: f32 = 1.48;
 
 /// Angles of the joints at a phase and a speed, rad.
 struct Pose {
@@ -33,11 +21,16 @@ struct Pose {
     walk: f32,
     /// How much of a run, from 0 to 1.
     run: f32,
+    /// How far it sits, from 0 to 1.
+    sit: f32,
+    /// Angle by which the arms are held farther from the body.
+    spread: f32,
 }
 
 impl Pose {
     fn of(walker: &Walker) -> Self {
-        Self { phase: walker.phase, walk: walker.walk(), run: walker.run() }
+        let Walker { phase, sit, spread, .. } = *walker;
+        Self { phase, walk: walker.walk(), run: walker.run(), sit, spread }
     }
 
     fn phase_of(&self, side: Side) -> f32 {
@@ -47,14 +40,19 @@ impl Pose {
     /// Angle of a thigh to the front.
     fn thigh(&self, side: Side) -> f32 {
         let swing = 0.40 * self.walk + 0.35 * self.run;
-        swing * self.phase_of(side).sin() + 0.06 * self.walk + 0.22 * self.run
+        swing * self.phase_of(side).sin() + 0.06 * self.walk + 0.22 * self.run + SEATED * self.sit
     }
 
     /// Angle of a shin to the thigh, backwards.
     fn knee(&self, side: Side) -> f32 {
         let swing = 0.75 * self.walk + 0.75 * self.run;
         let forwards = self.phase_of(side).cos().max(0.0);
-        0.08 + 0.2 * self.run + swing * forwards
+        self.still_knee() + 0.2 * self.run + swing * forwards
+    }
+
+    /// That of a figure that stays in its place: shins are upright when it sits.
+    fn still_knee(&self) -> f32 {
+        0.08 + (SEATED - 0.08) * self.sit
     }
 
     /// Height of the hips above the ground, m: one foot is on the ground in a walk, and a run leaps over its wide steps.
@@ -70,41 +68,35 @@ impl Pose {
         on_ground + 0.85 * self.run * (leaping - on_ground)
     }
 
+    /// How far the hips are behind the place above the feet at which the figure stands, m: feet stay where they are.
+    fn back(&self) -> f32 {
+        let behind = |sit: f32, knee: f32| (SEATED * sit).sin() + (SEATED * sit - knee).sin();
+        LEG * (behind(self.sit, self.still_knee()) - behind(0.0, 0.08))
+    }
+
     fn rotation(&self, joint: Joint) -> Quat {
         let bend = Quat::from_rotation_x;
         let twist = 0.10 * self.walk + 0.10 * self.run;
         match joint {
             Joint::Hips => Quat::from_rotation_y(0.5 * twist * self.phase.sin()),
             Joint::Chest => {
-                let lean = 0.02 * self.walk + 0.20 * self.run;
+                let bow = 0.6 * (PI * self.sit).sin();
+                let lean = 0.02 * self.walk + 0.20 * self.run + bow;
                 Quat::from_rotation_y(-1.5 * twist * self.phase.sin()) * bend(-lean)
             }
             Joint::Head => bend(0.12 * self.run),
             Joint::Arm(side) => {
                 let swing = 0.35 * self.walk + 0.40 * self.run;
-                let away = if side == Side::Left { -0.08 } else { 0.08 };
-                let angle = -swing * self.phase_of(side).sin() - 0.1 * self.run;
+                let away = 0.08 + self.spread;
+                let away = if side == Side::Left { -away } else { away };
+                let angle = -swing * self.phase_of(side).sin() - 0.1 * self.run + 0.3 * self.sit;
                 Quat::from_rotation_z(away) * bend(angle)
             }
-            Joint::Forearm(_) => bend(0.15 + 0.15 * self.walk + 1.15 * self.run),
+            Joint::Forearm(_) => bend(0.15 + 0.15 * self.walk + 1.15 * self.run + 0.6 * self.sit),
             Joint::Thigh(side) => bend(self.thigh(side)),
             Joint::Shin(side) => bend(-self.knee(side)),
         }
     }
-}
-
-/// Moves the figure along its way.
-pub fn go(mut figure: Single<(&mut Walker, &mut Transform)>, time: Res<Time>) {
-    let (now, tick) = (time.elapsed_secs(), time.delta_secs());
-    let speed = sum(&CHANGES, now);
-    let heading = Quat::from_rotation_y(sum(&TURNS, now));
-    let (walker, place) = &mut *figure;
-    // Longer steps at higher speed.
-    let stride = 0.9 + 0.45 * speed;
-    walker.speed = speed;
-    walker.phase = (walker.phase + TAU * speed / stride * tick) % TAU;
-    place.translation += heading * Vec3::NEG_Z * (speed * tick);
-    place.rotation = heading;
 }
 
 /// Moves the joints of a figure that no animation moves.
@@ -113,7 +105,7 @@ pub fn bend(figure: Single<&Walker>, mut joints: Query<(&Joint, &mut Transform)>
     for (joint, mut transform) in &mut joints {
         transform.rotation = pose.rotation(*joint);
         if *joint == Joint::Hips {
-            transform.translation.y = pose.hips();
+            transform.translation = Vec3::new(0.0, pose.hips(), pose.back());
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use crate::scenes::cape::walker::Walker;
+use crate::figure::walker::Walker;
 
 /// A joint.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,10 +84,9 @@ impl Side {
     }
 }
 
-/// Spawns the figure with its joints, and returns these in their order.
-pub fn spawn(commands: &mut Commands) -> Vec<Entity> {
-    let figure = commands.spawn((Walker::default(), Transform::default()));
-    let figure = figure.id();
+/// Spawns a figure with its joints, and returns these in their order.
+pub fn spawn(commands: &mut Commands, walker: Walker) -> Vec<Entity> {
+    let figure = commands.spawn((walker, Transform::default())).id();
     let mut joints: Vec<Entity> = Vec::new();
     for joint in Joint::ALL {
         let (parent, from) = match joint.parent() {

@@ -10,10 +10,7 @@ use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 use bunting_scenes::Design;
 
-use crate::scenes::cape::skeleton::Joint;
-
-/// Particles along each edge: 625 in all.
-const COUNT: u32 = 25;
+use crate::figure::skeleton::Joint;
 
 /// Width of the cloth, m.
 const WIDTH: f32 = 0.86;
@@ -43,17 +40,17 @@ const WOOL: FabricMaterial =
 /// Colour.
 pub const CRIMSON: [u8; 3] = [148, 28, 36];
 
-/// Spawns the cape with its collar on the chest.
-pub fn spawn(commands: &mut Commands, joints: &[Entity]) {
+/// Spawns the cape with its collar on the chest, with `count` particles along each edge.
+pub fn spawn(commands: &mut Commands, joints: &[Entity], count: u32) -> Entity {
     let chest = joints[Joint::Chest.index()];
     let collar: Vec<Entity> =
         (0..COLLAR).map(|joint| commands.spawn((pose(joint), ChildOf(chest))).id()).collect();
     let bound = (0..COLLAR).map(|joint| Mat4::from_translation(-bind_place(joint)));
-    commands.spawn((
-        ClothMesh::grid(COUNT, COUNT, WIDTH, LENGTH),
+    let cape = commands.spawn((
+        ClothMesh::grid(count, count, WIDTH, LENGTH),
         ClothMaterial(WOOL),
         Attachment::new(chest, ClothEdge::Top),
-        ClothSkin::new(collar.into_iter().zip(bound)).with_vertices(vertices()),
+        ClothSkin::new(collar.into_iter().zip(bound)).with_vertices(vertices(count)),
         SkinLimits {
             max_distance: ByVertex::AlongV { top: 0.02, bottom: 0.75 },
             backstop_distance: 0.04.into(),
@@ -63,6 +60,7 @@ pub fn spawn(commands: &mut Commands, joints: &[Entity]) {
         LodSet { pinned: Some(0), ..default() },
         Design::Bars(vec![CRIMSON]),
     ));
+    cape.id()
 }
 
 /// Place of a collar's joint on the flat cloth, m.
@@ -82,9 +80,9 @@ fn pose(joint: usize) -> Transform {
 }
 
 /// Indices and weights of the collar's joints for each vertex: the two beside it.
-fn vertices() -> impl Iterator<Item = ([u16; 4], [f32; 4])> {
-    (0..COUNT * COUNT).map(|vertex| {
-        let along = (vertex % COUNT) as f32 / (COUNT - 1) as f32 * (COLLAR - 1) as f32;
+fn vertices(count: u32) -> impl Iterator<Item = ([u16; 4], [f32; 4])> {
+    (0..count * count).map(move |vertex| {
+        let along = (vertex % count) as f32 / (count - 1) as f32 * (COLLAR - 1) as f32;
         let left = (along as usize).min(COLLAR - 2);
         let part = along - left as f32;
         ([left as u16, left as u16 + 1, 0, 0], [1.0 - part, part, 0.0, 0.0])
