@@ -25,29 +25,37 @@ struct Pose {
     sit: f32,
     /// Angle by which the arms are held farther from the body.
     spread: f32,
+    /// Angle by which the thighs are lifted higher in a run.
+    lift: f32,
 }
 
 impl Pose {
     fn of(walker: &Walker) -> Self {
-        let Walker { phase, sit, spread, .. } = *walker;
-        Self { phase, walk: walker.walk(), run: walker.run(), sit, spread }
+        let Walker { phase, sit, spread, lift, .. } = *walker;
+        Self { phase, walk: walker.walk(), run: walker.run(), sit, spread, lift }
     }
 
     fn phase_of(&self, side: Side) -> f32 {
         if side == Side::Left { self.phase } else { self.phase + PI }
     }
 
+    /// How much higher a thigh is lifted at this phase.
+    fn lifted(&self, side: Side) -> f32 {
+        0.5 * self.lift * self.run * (1.0 + self.phase_of(side).sin())
+    }
+
     /// Angle of a thigh to the front.
     fn thigh(&self, side: Side) -> f32 {
         let swing = 0.40 * self.walk + 0.35 * self.run;
-        swing * self.phase_of(side).sin() + 0.06 * self.walk + 0.22 * self.run + SEATED * self.sit
+        let further = SEATED * self.sit + self.lifted(side);
+        swing * self.phase_of(side).sin() + 0.06 * self.walk + 0.22 * self.run + further
     }
 
     /// Angle of a shin to the thigh, backwards.
     fn knee(&self, side: Side) -> f32 {
         let swing = 0.75 * self.walk + 0.75 * self.run;
         let forwards = self.phase_of(side).cos().max(0.0);
-        self.still_knee() + 0.2 * self.run + swing * forwards
+        self.still_knee() + 0.2 * self.run + swing * forwards + 3.0 * self.lifted(side)
     }
 
     /// That of a figure that stays in its place: shins are upright when it sits.

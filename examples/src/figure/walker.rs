@@ -19,6 +19,8 @@ pub struct Walker {
     pub sit: f32,
     /// Angle by which the arms are held farther from the body than those of a figure in few clothes, rad.
     pub spread: f32,
+    /// Angle by which the thighs are lifted higher in a run than those of a jogger, rad.
+    pub lift: f32,
 }
 
 impl Walker {

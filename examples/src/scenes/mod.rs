@@ -14,3 +14,4 @@ pub mod rollback;
 pub mod storm;
 pub mod swatches;
 pub mod towel;
+pub mod wardrobe;
