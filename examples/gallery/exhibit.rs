@@ -14,6 +14,7 @@ pub enum Exhibit {
     Towel,
     Swatches,
     Cape,
+    Wardrobe,
     CustomConstraint,
     #[cfg(feature = "avian")]
     Convoy,
@@ -39,6 +40,7 @@ impl Exhibit {
             Self::Towel => 4.0,
             Self::Swatches => 2.5,
             Self::Cape => 8.0,
+            Self::Wardrobe => 4.6,
             Self::CustomConstraint => 2.0,
             #[cfg(feature = "avian")]
             Self::Convoy => 6.0,

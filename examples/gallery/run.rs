@@ -17,6 +17,7 @@ use bunting_examples::scenes::rollback::Rollback;
 use bunting_examples::scenes::storm::Storm;
 use bunting_examples::scenes::swatches::Swatches;
 use bunting_examples::scenes::towel::Towels;
+use bunting_examples::scenes::wardrobe::Wardrobe;
 use bunting_examples::{Example, Options};
 
 use crate::exhibit::Exhibit;
@@ -44,6 +45,7 @@ impl Exhibit {
             Self::Towel => show(&Towels, &options),
             Self::Swatches => show(&Swatches, &options),
             Self::Cape => show(&Cape, &options),
+            Self::Wardrobe => show(&Wardrobe, &options),
             Self::CustomConstraint => show(&CustomConstraint, &options),
             #[cfg(feature = "avian")]
             Self::Convoy => show(&Convoy, &options),

@@ -7,11 +7,14 @@ use crate::figure::part::Part;
 use crate::figure::skeleton::{ANKLE, Joint, LEG, Side};
 use crate::scenes::wardrobe::layers::{ARMS, BARE, BODY, CLOTHES, SKIRTED};
 
-/// Distance that clothes keep from the body, m. Between two particles, cloth cuts as deep into a limb.
+/// Distance that clothes keep from trunk and arms, m. Between two particles, cloth cuts as deep into a limb.
 const MARGIN: f32 = 0.010;
 
+/// Distance that clothes keep from legs, m: knees come fast.
+const LEG_MARGIN: f32 = 0.018;
+
 /// Distance that clothes keep from hips and thighs on which there is a skirt, m.
-const OVER_SKIRT: f32 = 0.035;
+const OVER_SKIRT: f32 = 0.045;
 
 /// Friction coefficient of skin: clothes slide on it.
 const FRICTION: f32 = 0.2;
@@ -27,7 +30,7 @@ fn trunk() -> [Part; 5] {
 }
 
 fn hips() -> Part {
-    Part::new(Joint::Hips, [-0.07, 0.95, 0.0], [0.07, 0.95, 0.0], 0.105)
+    Part::new(Joint::Hips, [-0.075, 0.96, 0.0], [0.075, 0.96, 0.0], 0.092)
 }
 
 fn thigh(side: Side) -> Part {
@@ -58,12 +61,12 @@ pub fn spawn(commands: &mut Commands, joints: &[Entity]) {
         commands.spawn((part, collider, layers, part.pose(), held));
     };
     for side in [Side::Left, Side::Right] {
-        spawn(shin(side), MARGIN, BODY);
+        spawn(shin(side), LEG_MARGIN, BODY);
         arm(side).into_iter().for_each(|part| spawn(part, MARGIN, ARMS));
     }
     trunk().into_iter().for_each(|part| spawn(part, MARGIN, BODY));
     for part in [hips(), thigh(Side::Left), thigh(Side::Right)] {
-        spawn(part, MARGIN, BARE);
+        spawn(part, LEG_MARGIN, BARE);
         spawn(part, OVER_SKIRT, SKIRTED);
     }
 }

@@ -3,6 +3,8 @@
 use bevy::prelude::*;
 
 use crate::figure::part::Part;
+use crate::figure::skeleton::Joint;
+use crate::figure::walker::Walker;
 use crate::render::{print, stage};
 use crate::scenes::wardrobe::room::{HEIGHT, RADIUS, Stool};
 
@@ -14,6 +16,8 @@ pub fn plugin(app: &mut App) {
 
 fn draw_body(
     parts: Query<(Entity, &Part)>,
+    figure: Single<Entity, With<Walker>>,
+    joints: Query<Entity, With<Joint>>,
     mut commands: Commands,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
@@ -23,6 +27,9 @@ fn draw_body(
         perceptual_roughness: 0.7,
         ..default()
     });
+    for entity in joints.iter().chain([*figure]) {
+        commands.entity(entity).insert(Visibility::default());
+    }
     for (entity, part) in &parts {
         let capsule = meshes.add(Capsule3d::new(part.radius, 2.0 * part.half_length()));
         commands.entity(entity).insert((Mesh3d(capsule), MeshMaterial3d(skin.clone())));

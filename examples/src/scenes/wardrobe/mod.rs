@@ -1,15 +1,17 @@
 //! A figure that walks, runs and sits in clothes that it puts on and takes off.
 
 mod body;
+mod cut;
 #[cfg(feature = "render")]
 mod draw;
 mod garment;
 mod layers;
 mod measure;
+mod patterns;
 mod record;
 mod room;
+mod scarf;
 mod story;
-mod tailor;
 
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
@@ -37,8 +39,8 @@ const SPREAD: f32 = 0.18;
 /// Thighs are lifted so much higher in a run than a jogger's that they come to 80°, rad.
 const LIFT: f32 = 0.37;
 
-/// Greatest number of substeps in a tick. With more, legs that run would have three times as many, of which nothing is seen;
-/// with four, they come through the skirt.
+/// Greatest number of substeps in a tick. Legs that run would have 24, of which nothing is seen; with six they come through
+/// the skirt.
 const MOST_SUBSTEPS: u32 = 8;
 
 /// A figure that changes its clothes.

@@ -29,6 +29,9 @@ impl Record for WardrobeRecord {
         let mut clothes = world.query::<&Garment>();
         let is_there = |garment: &&Garment| clothes.iter(world).any(|it| it == *garment);
         let worn: Vec<&Garment> = Garment::ALL.iter().filter(is_there).collect();
+        if worn.is_empty() {
+            return None;
+        }
         let outfit = format!("{worn:?}");
         if self.outfits.last().is_none_or(|(last, _)| *last != outfit) {
             self.outfits.push((outfit, Durations::default()));

@@ -10,13 +10,13 @@ use crate::scenes::wardrobe::garment::Garment;
 
 /// It walks, runs, stops, turns, sits down and rises.
 pub const WAY: Way = Way {
-    speed: &[[0.3, 0.7, WALK], [3.4, 1.0, RUN - WALK], [6.2, 0.9, -RUN]],
-    turns: &[[7.2, 0.9, PI]],
-    sits: &[[8.2, 1.0, 1.0], [10.0, 1.0, -1.0]],
+    speed: &[[0.3, 0.7, WALK], [3.2, 0.9, RUN - WALK], [5.6, 0.8, -RUN]],
+    turns: &[[6.5, 0.8, PI]],
+    sits: &[[7.4, 0.9, 1.0], [8.9, 0.9, -1.0]],
 };
 
 /// Simulated time, s.
-pub const SECONDS: f64 = 12.0;
+pub const SECONDS: f64 = 10.4;
 
 /// What happens to a piece of clothing.
 #[derive(Clone, Copy, Debug)]
@@ -37,8 +37,8 @@ const CHANGES: [(f32, Change, Garment); 8] = [
     (2.2, Drop, Cape),
     (2.4, PutOn, Jacket),
     (2.8, PutOn, Scarf),
-    (11.2, TakeOff, Scarf),
-    (11.5, TakeOff, Jacket),
+    (9.9, TakeOff, Scarf),
+    (10.1, TakeOff, Jacket),
 ];
 
 /// The joints of the figure, in their order.

@@ -1,4 +1,4 @@
-//! Cuts clothes: tubes about the body, closed or open in front.
+//! The cut of clothes: tubes about the body, closed or open in front.
 
 use std::f32::consts::TAU;
 
