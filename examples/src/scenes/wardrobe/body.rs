@@ -8,7 +8,7 @@ use crate::figure::skeleton::{ANKLE, Joint, LEG, Side};
 use crate::scenes::wardrobe::layers::{ARMS, BARE, BODY, CLOTHES, SKIRTED};
 
 /// Distance that clothes keep from trunk and arms, m. Between two particles, cloth cuts as deep into a limb.
-const MARGIN: f32 = 0.010;
+const MARGIN: f32 = 0.014;
 
 /// Distance that clothes keep from legs, m: knees come fast.
 const LEG_MARGIN: f32 = 0.018;
@@ -30,7 +30,7 @@ fn trunk() -> [Part; 5] {
 }
 
 fn hips() -> Part {
-    Part::new(Joint::Hips, [-0.075, 0.96, 0.0], [0.075, 0.96, 0.0], 0.092)
+    Part::new(Joint::Hips, [-0.075, 0.96, 0.0], [0.075, 0.96, 0.0], 0.085)
 }
 
 fn thigh(side: Side) -> Part {

@@ -21,23 +21,23 @@ struct Bounds {
 const BOUNDS: [Bounds; 5] = [
     Bounds {
         garment: Garment::Skirt,
-        depth: ("depth of the skirt in the body, m", 0.008),
+        depth: ("depth of the skirt in the body, m", 0.01),
         strain: ("strain of the skirt, 99 %", 0.08),
     },
     Bounds {
         garment: Garment::Shirt,
-        depth: ("depth of the shirt in the body, m", 0.008),
+        depth: ("depth of the shirt in the body, m", 0.01),
         strain: ("strain of the shirt, 99 %", 0.08),
     },
     Bounds {
         garment: Garment::Jacket,
-        depth: ("depth of the jacket in the body, m", 0.005),
+        depth: ("depth of the jacket in the body, m", 0.01),
         strain: ("strain of the jacket, 99 %", 0.08),
     },
     Bounds {
         garment: Garment::Scarf,
-        depth: ("depth of the scarf in the body, m", 0.005),
-        strain: ("strain of the scarf, 99 %", 0.06),
+        depth: ("depth of the scarf in the body, m", 0.01),
+        strain: ("strain of the scarf, 99 %", 0.08),
     },
     // The sides of the cape are in the arms for a tick when it is put on.
     Bounds {

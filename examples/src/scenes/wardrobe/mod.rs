@@ -16,6 +16,7 @@ mod story;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
+use bevy_bunting::{CostTable, LodCosts};
 
 use crate::figure::follow::follow;
 use crate::figure::walker::Walker;
@@ -54,6 +55,9 @@ impl Example for Wardrobe {
     fn build(&self, app: &mut App, schedule: impl ScheduleLabel) {
         let steps = vec![StepLimits { substeps: 1..=MOST_SUBSTEPS, ..StepLimits::default() }];
         app.insert_resource(ClothSettings { steps, ..ClothSettings::default() });
+        // With measured costs, the ticks in which new clothes begin depend on the machine's load.
+        let costs = LodCosts::Fixed(CostTable::default());
+        app.insert_resource(ClothBudget { costs, ..ClothBudget::default() });
         app.insert_resource(story::WAY);
         app.add_systems(schedule, (go, pose::bend, dress, follow(EYE)).chain());
         let view = Transform::from_translation(EYE).looking_at(CENTRE, Vec3::Y);
