@@ -21,7 +21,7 @@ struct Bounds {
 const BOUNDS: [Bounds; 5] = [
     Bounds {
         garment: Garment::Skirt,
-        depth: ("depth of the skirt in the body, m", 0.01),
+        depth: ("depth of the skirt in the body, m", 0.02),
         strain: ("strain of the skirt, 99 %", 0.08),
     },
     Bounds {

@@ -40,7 +40,7 @@ const SPREAD: f32 = 0.18;
 /// Thighs are lifted so much higher in a run than a jogger's that they come to 80°, rad.
 const LIFT: f32 = 0.37;
 
-/// Greatest number of substeps in a tick. Legs that run would have 24, of which nothing is seen; with six they come through
+/// Greatest number of substeps in a tick. Legs that run would have 32, of which nothing is seen; with six they come through
 /// the skirt.
 const MOST_SUBSTEPS: u32 = 8;
 
