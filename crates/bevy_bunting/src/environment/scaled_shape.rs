@@ -85,6 +85,7 @@ impl ScaledShape {
     /// Makes the shape of a collider with this shape and a scale, unless it has that. Whether a scale that it cannot have is to be
     /// reported: it then keeps its size.
     pub fn set(&mut self, own: &SharedShape, asked: Vec3) -> bool {
+        let asked = without_rounding(asked);
         let is_known = self.own.as_ref().is_some_and(|known| is_same(known, own));
         if is_near(self.asked, asked) && (is_known || (self.own.is_none() && asked == Vec3::ONE)) {
             return false;
@@ -110,7 +111,43 @@ fn is_same(one: &SharedShape, other: &SharedShape) -> bool {
     core::ptr::addr_eq(&raw const *one.0, &raw const *other.0)
 }
 
+/// A scale of which components that differ by rounding alone are equal, and one where they are one, as products of turns and scales of a
+/// skeleton's bones are not: a capsule of another scale in one direction is a polyhedron.
+fn without_rounding(scale: Vec3) -> Vec3 {
+    let equal = [Vec3::ONE, Vec3::splat(scale.x)].into_iter().find(|it| is_near(*it, scale));
+    equal.unwrap_or(scale)
+}
+
 /// Whether two scales are the same but for rounding.
 fn is_near(one: Vec3, other: Vec3) -> bool {
     (one - other).abs().cmple(one.abs() * SAME).all()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The scale of the third of three bones, each turned, of a figure of a size.
+    fn of_turned_bones(size: f32) -> Vec3 {
+        let bone = |turn: f32| {
+            bevy_math::Mat3::from_rotation_x(turn) * bevy_math::Mat3::from_rotation_y(1.3 * turn)
+        };
+        let axes = size * bone(0.7) * bone(1.9) * bone(-0.4);
+        Vec3::new(axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length())
+    }
+
+    #[test]
+    fn capsules_on_turned_bones_stay_capsules() {
+        let own = SharedShape::capsule_y(0.2, 0.05);
+        for size in [1.0, 1.3] {
+            let scale = of_turned_bones(size) * Vec3::new(1.0, 1.000_001, 0.999_999);
+            let mut scaled = ScaledShape::default();
+            assert!(!scaled.set(&own, scale));
+            let radius = scaled.of(&own).as_capsule().map(|capsule| capsule.radius);
+            assert!(radius.is_some_and(|it| (it - 0.05 * size).abs() < 1e-6), "{radius:?}");
+        }
+        let mut stretched = ScaledShape::default();
+        assert!(!stretched.set(&own, Vec3::new(1.0, 1.5, 1.0)));
+        assert!(stretched.of(&own).as_convex_polyhedron().is_some());
+    }
 }

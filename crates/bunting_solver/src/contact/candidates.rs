@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use crate::contact::triangles::TriangleCells;
 use crate::fabric::Fabric;
 
 /// Particles that a collider has pushed in a substep so far, and their displacements, m, in the cloth's frame.
@@ -28,6 +29,8 @@ pub(crate) struct Candidates {
     pub touching: Vec<u32>,
     /// What the collider has pushed particles after the passes of this substep.
     pub pushed: Pushed,
+    /// The collider's triangles near the cloth, if it consists of triangles. They are kept from tick to tick.
+    pub cells: Option<TriangleCells>,
 }
 
 impl Candidates {

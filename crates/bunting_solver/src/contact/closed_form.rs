@@ -1,13 +1,14 @@
-//! Convex shapes whose nearest plane has a closed form: half-space, ball, capsule, cuboid, cylinder and cone, sharp or rounded.
+//! Convex shapes whose nearest plane has a closed form: half-space, ball, capsule, cuboid, cylinder, cone and polyhedron, sharp or rounded.
 //!
-//! parry computes the same by a call through its table of functions, with less known about the shape, and casts rays at cylinders
-//! and cones by iteration.
+//! parry computes the same by a call through its table of functions, with less known about the shape; it casts rays at cylinders
+//! and cones, and finds what is nearest of polyhedra, by iteration.
 
 use glam::{Vec2, Vec3};
-use parry3d::shape::{Cone, Cuboid, Cylinder, Shape, TypedShape};
+use parry3d::shape::{Cone, ConvexPolyhedron, Cuboid, Cylinder, Shape, TypedShape};
 
 use crate::constants::LEAST_LENGTH;
 use crate::contact::plane::Plane;
+use crate::contact::polyhedron;
 
 /// Greatest number of steps in the search for the point at which a path enters. Fewer: paths that graze an edge enter beside it.
 const ADVANCES: usize = 8;
@@ -17,14 +18,14 @@ const ENTERED: f32 = 1e-6;
 
 /// A convex shape: all points that are at most `radius` away from its core, m.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ClosedForm {
-    pub core: Core,
+pub(super) struct ClosedForm<'a> {
+    pub core: Core<'a>,
     pub radius: f32,
 }
 
 /// Lengths in m. The axes of cylinders and cones are y.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Core {
+pub(super) enum Core<'a> {
     /// All points below the plane through the origin that has this unit normal.
     HalfSpace(Vec3),
     /// The origin.
@@ -45,9 +46,10 @@ pub(super) enum Core {
         half_height: f32,
         radius: f32,
     },
+    Polyhedron(&'a ConvexPolyhedron),
 }
 
-impl Core {
+impl Core<'_> {
     fn cuboid(shape: &Cuboid) -> Self {
         Self::Cuboid { half: shape.half_extents }
     }
@@ -90,13 +92,14 @@ impl Core {
                     of_triangle(place - tip, Vec2::new(radius, -2.0 * half_height))?;
                 Some((distance, normal.x * outward + normal.y * Vec3::Y))
             }
+            Self::Polyhedron(shape) => polyhedron::nearest(shape, at),
         }
     }
 }
 
-impl ClosedForm {
+impl<'a> ClosedForm<'a> {
     /// The closed form of a shape, if it has one.
-    pub fn of(shape: &dyn Shape) -> Option<Self> {
+    pub fn of(shape: &'a dyn Shape) -> Option<Self> {
         let (core, radius) = match shape.as_typed_shape() {
             TypedShape::HalfSpace(shape) => (Core::HalfSpace(shape.normal), 0.0),
             TypedShape::Ball(shape) => (Core::Point, shape.radius),
@@ -114,6 +117,10 @@ impl ClosedForm {
             }
             TypedShape::Cone(shape) => (Core::cone(shape), 0.0),
             TypedShape::RoundCone(shape) => (Core::cone(&shape.inner_shape), shape.border_radius),
+            TypedShape::ConvexPolyhedron(shape) => (Core::Polyhedron(shape), 0.0),
+            TypedShape::RoundConvexPolyhedron(shape) => {
+                (Core::Polyhedron(&shape.inner_shape), shape.border_radius)
+            }
             _ => return None,
         };
         Some(Self { core, radius })
@@ -127,7 +134,7 @@ impl ClosedForm {
     }
 }
 
-impl ClosedForm {
+impl ClosedForm<'_> {
     /// The first point of the surface on a path that begins outside, m, and the unit normal there; none if the path does not enter.
     ///
     /// The shape lies below each of its planes. So the path is free up to the plane nearest to where it is known to be free, and these
@@ -208,9 +215,18 @@ mod tests {
 
     use super::ClosedForm;
 
-    fn shapes() -> [SharedShape; 10] {
+    fn shapes() -> [SharedShape; 13] {
+        let corners = Ball::new(0.3).to_trimesh(9, 6).0;
+        let flat = corners.iter().map(|at| *at * Vec3::new(1.0, 0.4, 0.7)).collect::<Vec<_>>();
+        let wedge = [Vec3::ZERO, 0.6 * Vec3::X, 0.3 * Vec3::Y, 0.5 * Vec3::X + 0.5 * Vec3::Z];
+        let hull = |points: &[Vec3]| SharedShape::convex_hull(points).expect("a hull");
+        let rounded =
+            |points: &[Vec3]| SharedShape::round_convex_hull(points, 0.05).expect("a hull");
         [
             SharedShape::halfspace(Vec3::new(0.6, 0.8, 0.0)),
+            hull(&flat),
+            hull(&wedge),
+            rounded(&flat),
             SharedShape::ball(0.3),
             SharedShape::capsule(Vec3::new(-0.2, 0.1, 0.0), Vec3::new(0.3, 0.2, 0.1), 0.15),
             SharedShape::capsule(0.1 * Vec3::X, 0.1 * Vec3::X, 0.2),
@@ -229,6 +245,9 @@ mod tests {
             TypedShape::RoundCuboid(it) => (SharedShape::new(it.inner_shape), it.border_radius),
             TypedShape::RoundCylinder(it) => (SharedShape::new(it.inner_shape), it.border_radius),
             TypedShape::RoundCone(it) => (SharedShape::new(it.inner_shape), it.border_radius),
+            TypedShape::RoundConvexPolyhedron(it) => {
+                (SharedShape::new(it.inner_shape.clone()), it.border_radius)
+            }
             _ => (shape.clone(), 0.0),
         }
     }
@@ -307,9 +326,10 @@ mod tests {
 
     #[test]
     fn only_places_with_several_nearest_planes_have_none() {
-        let ball = ClosedForm::of(&*SharedShape::ball(0.3).0).expect("a closed form");
+        let (ball, cuboid) = (SharedShape::ball(0.3), SharedShape::cuboid(0.3, 0.1, 0.2));
+        let ball = ClosedForm::of(&*ball.0).expect("a closed form");
         assert!(ball.plane(Vec3::ZERO).is_none());
-        let cuboid = ClosedForm::of(&*SharedShape::cuboid(0.3, 0.1, 0.2).0).expect("one");
+        let cuboid = ClosedForm::of(&*cuboid.0).expect("a closed form");
         let on_the_surface = cuboid.plane(Vec3::new(0.05, 0.1, 0.0)).expect("a plane");
         assert_eq!((on_the_surface.normal, on_the_surface.distance), (Vec3::Y, 0.0));
         assert!(ClosedForm::of(&*SharedShape::triangle(Vec3::X, Vec3::Y, Vec3::Z).0).is_none());

@@ -5,6 +5,7 @@ use core::ops::Range;
 use crate::constants::LEAST_LENGTH;
 use crate::contact::lane_shapes::{Affine, AffinePacks, Kind, ShapePacks};
 use crate::contact::substep::Contact;
+use crate::contact::triangles::LaneTriangles;
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
@@ -12,6 +13,9 @@ use crate::simd::vec3::{Pack3, V3};
 /// are pushed along the plane that was nearest before, though they enter it through another one. Smaller: by rounding, particles that are
 /// pressed against a shape count as entering it, and are solved one by one.
 const TOUCHING: f32 = 0.1;
+
+/// How much longer than it is a path is taken to be: more than rounding.
+const LONGER: f32 = 1.001;
 
 /// A collider of a cloth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +36,8 @@ pub(crate) struct ColliderPacks<P: Pack> {
     /// For each pack of the batch, its index in `near`, or [`NOT_NEAR`].
     places: Vec<u32>,
     shape: ShapePacks<P>,
+    /// The triangles near the particles, of colliders that consist of triangles.
+    pub(super) triangles: Option<LaneTriangles<P>>,
     /// From the cloth's frame into the collider's, at the start and at the end of the substep.
     pub(super) into_collider: [AffinePacks<P>; 2],
     /// From the collider's frame into the cloth's, at the end of the substep.
@@ -40,6 +46,8 @@ pub(crate) struct ColliderPacks<P: Pack> {
     pub(super) into_motion: AffinePacks<P>,
     clearance: P,
     friction: P,
+    /// The substep that has begun, counted from one.
+    substep: u32,
     /// One in lanes whose contacts are solved here, zero in others.
     pub solved: P,
     /// Square of the longest push along a surface in each lane, m².
@@ -121,24 +129,28 @@ impl<P: Pack> ColliderPacks<P> {
             near: Vec::new(),
             places: vec![NOT_NEAR; pack_count],
             shape: ShapePacks::new(key.1),
+            triangles: (key.1 == Kind::Triangles).then(LaneTriangles::new),
             into_collider: [AffinePacks::zero(); 2],
             into_cloth: AffinePacks::zero(),
             into_motion: AffinePacks::zero(),
             clearance: zero,
             friction: zero,
+            substep: 0,
             solved: zero,
             longest: zero,
         }
     }
 
-    /// Adds a particle that may touch the collider of its lane.
-    pub fn add(&mut self, (pack, lane): (usize, usize)) {
+    /// Adds a particle that may touch the collider of its lane. Returns the index of its pack among those near the collider.
+    pub fn add(&mut self, (pack, lane): (usize, usize)) -> usize {
         let place = &mut self.places[pack];
         if *place == NOT_NEAR {
             *place = self.near.len() as u32;
             self.near.push(NearPack::new(pack as u32));
         }
-        self.near[*place as usize].active.lanes_mut()[lane] = 1.0;
+        let index = *place as usize;
+        self.near[index].active.lanes_mut()[lane] = 1.0;
+        index
     }
 
     /// The particles of a pack that has been added.
@@ -148,8 +160,12 @@ impl<P: Pack> ColliderPacks<P> {
 
     /// Writes a collider into the lanes of its cloth.
     pub(super) fn fill(&mut self, lanes: &Range<usize>, contact: &Contact) {
-        let Some(form) = contact.closed_form() else { return };
-        self.shape.fill(lanes, form);
+        self.substep = contact.substep();
+        if self.triangles.is_none()
+            && let Some(form) = contact.closed_form()
+        {
+            self.shape.fill(lanes, form);
+        }
         let changes = contact.to_collider();
         for (packs, change) in self.into_collider.iter_mut().zip(changes) {
             packs.fill(lanes, change);
@@ -216,12 +232,19 @@ impl<P: Pack> Kernel<P> for Press<'_, P> {
             let present: V3<L> = V3::load(token, &self.position[pack]);
             let end = present - V3::load(token, &near.pushed);
             let to = at_end.moved(end);
-            let (distance, normal) = set.shape.nearest(token, to);
+            let triangles = set.triangles.as_ref().map(|all| (all, index));
+            let shapes = NearShapes { shape: &set.shape, triangles, clearance };
+            let (distance, normal) = shapes.nearest(token, to);
             let depth = clearance - distance;
             let from = at_start.moved(V3::load(token, &self.start[pack]));
             let moved = to - from;
-            let approach = normal.dot(moved);
-            // A convex shape lies below its planes: a path whose ends are above one does not enter the shape.
+            // A convex shape lies below its planes: a path whose ends are above one does not enter the shape. Nor does a path enter other shapes
+            // that is shorter than its end is far from them.
+            let approach = if triangles.is_some() {
+                L::splat(token, LONGER) * moved.dot(moved).sqrt()
+            } else {
+                normal.dot(moved)
+            };
             let is_above = zero.lt(distance) & approach.lt(distance);
             let clear = zero.or_where_not(is_above & depth.lt(zero), L::load(token, &near.active));
             let touches = zero.lt(clear * solved);
@@ -237,8 +260,14 @@ impl<P: Pack> Kernel<P> for Press<'_, P> {
             let entering = zero.or_where_not(slides, entering);
             let enters = zero.lt(entering);
             if enters.any() {
-                let pressed = Pressed { from, to, moved, clearance, friction };
-                let (is_pressed, other) = pressed.slide(token, &set.shape);
+                let start = match &mut set.triangles {
+                    Some(all) => all.nearest_start(token, (index, set.substep), from, clearance),
+                    None => set.shape.nearest(token, from),
+                };
+                let triangles = set.triangles.as_ref().map(|all| (all, index));
+                let shapes = NearShapes { shape: &set.shape, triangles, clearance };
+                let pressed = Pressed { start, to, moved, clearance, friction };
+                let (is_pressed, other) = pressed.slide(token, &shapes);
                 push = other.or_where_not(enters, push);
                 slides = slides | (enters & is_pressed);
             }
@@ -254,6 +283,39 @@ impl<P: Pack> Kernel<P> for Press<'_, P> {
             }
         }
         longest.store(&mut set.longest);
+    }
+}
+
+/// The shapes near the particles of a pack.
+struct NearShapes<'a, L: Lane> {
+    shape: &'a ShapePacks<L::Pack>,
+    /// Those of all packs, and the index of the pack among these.
+    triangles: Option<(&'a LaneTriangles<L::Pack>, usize)>,
+    clearance: L,
+}
+
+impl<L: Lane> NearShapes<'_, L> {
+    /// Distance of points from the surface, m, and the unit normals of the nearest planes. Within a shape the distance is only known to be at most
+    /// zero.
+    #[inline(always)]
+    fn nearest(&self, token: L::Token, at: V3<L>) -> (L, V3<L>) {
+        match self.triangles {
+            Some((triangles, pack)) => triangles.nearest(token, pack, at, self.clearance),
+            None => self.shape.nearest(token, at),
+        }
+    }
+
+    /// Whether paths from outside do not cross the surface, given the sum of the distances of their ends, m. Of surfaces with an inside the ends
+    /// tell.
+    #[inline(always)]
+    fn stays_before(&self, token: L::Token, path: V3<L>, distances: L) -> L::Mask {
+        let zero = L::splat(token, 0.0);
+        let is_closed = match self.triangles {
+            Some((triangles, pack)) => L::load(token, triangles.is_closed(pack)),
+            None => L::splat(token, 1.0),
+        };
+        let length = L::splat(token, LONGER) * path.dot(path).sqrt();
+        zero.lt(is_closed) | length.lt(distances)
     }
 }
 
@@ -288,8 +350,9 @@ fn slid<L: Lane>(token: L::Token, moved: V3<L>, normal: V3<L>, depth: L, frictio
 
 /// Particles that touched the shape before, and are pressed into it.
 struct Pressed<L> {
+    /// Distances of the starts of the paths from the shape, m, and unit normals there.
+    start: (L, V3<L>),
     /// Ends of the paths, in the collider's frame, m.
-    from: V3<L>,
     to: V3<L>,
     moved: V3<L>,
     clearance: L,
@@ -300,18 +363,20 @@ impl<L: Lane> Pressed<L> {
     /// The slide along the plane that was nearest before, and for which particles it holds: as
     /// [`Surface::project`](crate::contact::surface::Surface::project), others enter the shape from afar, or have been in it.
     #[inline(always)]
-    fn slide(&self, token: L::Token, shape: &ShapePacks<L::Pack>) -> (L::Mask, Slide<L>) {
+    fn slide(&self, token: L::Token, shapes: &NearShapes<L>) -> (L::Mask, Slide<L>) {
         let zero = L::splat(token, 0.0);
-        let (height, normal) = shape.nearest(token, self.from);
+        let (height, normal) = self.start;
         let depth = self.clearance - (height + normal.dot(self.moved));
         let near = L::splat(token, 1.0 + TOUCHING) * self.clearance;
         let touched = zero.lt(height) & height.lt(near);
         let shift = slid(token, self.moved, normal, depth.max(zero), self.friction);
         // Beside an edge this point may lie within another face.
-        let (distance, other) = shape.nearest(token, self.to + shift);
+        let (distance, other) = shapes.nearest(token, self.to + shift);
+        let stays =
+            zero.lt(distance) & shapes.stays_before(token, self.moved + shift, height + distance);
         let missing = (self.clearance - distance).max(zero);
         let shift = shift.plus_scaled(other, missing);
-        (touched & zero.lt(depth) & zero.lt(distance), Slide { normal, shift })
+        (touched & zero.lt(depth) & stays, Slide { normal, shift })
     }
 }
 
@@ -367,7 +432,9 @@ mod tests {
             set.members.push(Member { cloth: 0, collider: 0 });
             set.fill(&(0..8), &contact);
             set.solved = Pack8::splat(1.0);
-            (0..8).for_each(|lane| set.add((0, lane)));
+            for lane in 0..8 {
+                set.add((0, lane));
+            }
             let (mut slid, mut entered) = (0, 0);
             let mut ways = places().skip(5);
             for starts in places().take(4000).collect::<Vec<_>>().chunks(8) {

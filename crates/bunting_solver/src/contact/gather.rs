@@ -6,6 +6,7 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
+use crate::constants::LEAST_CLEARANCE;
 use crate::contact::bounds::{dragged_by_anchors, moved_by_forces};
 use crate::contact::candidates::Candidates;
 use crate::contact::closed_form::ClosedForm;
@@ -17,6 +18,7 @@ use crate::contact::obstacle::Obstacle;
 use crate::contact::pressing::Pressing;
 use crate::contact::reaction::ReactionSum;
 use crate::contact::swept_boxes::{Sweep, SweptBoxes};
+use crate::contact::triangles::{LaneTriangles, TriangleCells};
 use crate::fabric::Fabric;
 use crate::simd::lane::Pack;
 
@@ -63,6 +65,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 state.colliders.iter().zip(&mut state.contacts).enumerate()
             {
                 gather_candidates(&self.fabric, collider, &boxes, candidates);
+                let distance = (state.material.thickness + collider.margin).max(LEAST_CLEARANCE);
+                TriangleCells::begin_tick(
+                    &mut candidates.cells,
+                    &collider.shape,
+                    [distance, self.fabric.shortest_link()],
+                    self.fabric.particle_count(),
+                );
                 let to_end = to_end_of_tick(collider);
                 let (mut farthest, mut in_frame) = (0.0_f32, 0.0_f32);
                 for &particle in candidates.particles.iter().chain(&candidates.corners) {
@@ -86,14 +95,23 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                         &self.layout,
                         member,
                         collider,
-                        &candidates.particles,
+                        candidates,
+                        |at_of| {
+                            let (at, velocity) = (at[at_of as usize], velocities[at_of as usize]);
+                            (at, to_end.transform_point3(at) - frame.to_new(at) - velocity * tick)
+                        },
                     );
             }
         }
         sets.sort_by_key(|set: &ColliderPacks<P>| set.key);
+        sets.iter_mut().filter_map(|set| set.triangles.as_mut()).for_each(LaneTriangles::pack);
         self.collider_packs = sets;
     }
 }
+
+/// Part of the way of a particle in a tick, beyond half of the reach of the cells, within which triangles are known in lanes. Smaller: particles that are
+/// pulled along come to where they are not known, and are solved one by one. Larger: more triangles are asked.
+const WAY: f32 = 1.5;
 
 /// From the points of a collider at the start of the tick to the same points at its end, each in the cloth's frame as it is then.
 fn to_end_of_tick(collider: &Collider) -> Affine3A {
@@ -109,27 +127,40 @@ fn contains_pin(fabric: &Fabric, collider: &Collider, positions: &[Vec3]) -> boo
     pins.any(|pin| collider.shape.contains_local_point(pose.inverse_transform_point(pin)))
 }
 
-/// Adds the particles that may touch a collider to the set of its kind, if there are lanes for it. Returns whether there are.
+/// Adds the particles that may touch a collider to the set of its kind, if there are lanes for it. Returns whether there are. `moving` tells the
+/// place of a particle, and the way of the collider in the tick relative to it, m.
 fn add_to_sets<P: Pack, Y: Layout<P>>(
     sets: &mut Vec<ColliderPacks<P>>,
     layout: &Y,
     member: Member,
     collider: &Collider,
-    particles: &[u32],
+    candidates: &mut Candidates,
+    moving: impl Fn(u32) -> (Vec3, Vec3),
 ) -> bool {
-    let form = ClosedForm::of(&*collider.shape.0);
-    let Some(kind) = form.and_then(|form| Kind::of(&form)).filter(|_| !particles.is_empty()) else {
-        return false;
-    };
+    let Candidates { particles, cells, .. } = candidates;
+    let form = ClosedForm::of(&*collider.shape.0).and_then(|form| Kind::of(&form));
+    let kind = form.or(cells.as_ref().map(|_| Kind::Triangles)).filter(|_| !particles.is_empty());
+    let Some(kind) = kind else { return false };
     let key = (member.collider, kind);
     let found = sets.iter().position(|set| set.key == key);
     let index = found.unwrap_or_else(|| {
         sets.push(ColliderPacks::new(key, layout.pack_count()));
         sets.len() - 1
     });
-    sets[index].members.push(member);
-    for &particle in particles {
-        sets[index].add(layout.locate(particle as usize, member.cloth));
+    let set = &mut sets[index];
+    set.members.push(member);
+    let pose = collider.pose_at(0.0);
+    let is_closed = cells.as_ref().is_some_and(TriangleCells::is_closed);
+    for &particle in &*particles {
+        let (pack, lane) = layout.locate(particle as usize, member.cloth);
+        let near = set.add((pack, lane));
+        let (Some(triangles), Some(cells)) = (&mut set.triangles, cells.as_mut()) else { continue };
+        let (at, way) = moving(particle);
+        let at = pose.inverse_transform_point(at);
+        let reach = cells.reach();
+        let radius = reach.min(0.5 * reach + WAY * way.length());
+        let find = |found: &mut _| cells.within(at, radius, found);
+        triangles.add((near, lane), at, is_closed, find);
     }
     true
 }

@@ -19,17 +19,20 @@ pub(crate) enum Kind {
     Cuboid,
     /// Sharp or rounded.
     Cylinder,
+    /// Those near each particle.
+    Triangles,
 }
 
 impl Kind {
-    /// The kind of a shape, if there are lanes for it. Cones have none: they are rare, and their profile takes more instructions.
+    /// The kind of a shape, if there are lanes for it. Cones have none: they are rare, and their profile takes more instructions. Nor have
+    /// polyhedra, of which each has its own number of faces.
     pub(super) fn of(form: &ClosedForm) -> Option<Self> {
         match form.core {
             Core::HalfSpace(_) => Some(Self::HalfSpace),
             Core::Point | Core::Segment { .. } => Some(Self::Capsule),
             Core::Cuboid { .. } => Some(Self::Cuboid),
             Core::Cylinder { .. } => Some(Self::Cylinder),
-            Core::Cone { .. } => None,
+            Core::Cone { .. } | Core::Polyhedron(_) => None,
         }
     }
 }
@@ -111,6 +114,7 @@ impl<P: Pack> ShapePacks<P> {
             Core::Cylinder { half_height, radius } | Core::Cone { half_height, radius } => {
                 (Vec3::new(radius, half_height, 0.0), Vec3::ZERO)
             }
+            Core::Polyhedron(_) => (Vec3::ZERO, Vec3::ZERO),
         };
         fill_lanes3(&mut self.place, lanes, place);
         fill_lanes3(&mut self.along, lanes, along);
@@ -125,6 +129,8 @@ impl<P: Pack> ShapePacks<P> {
         let place: V3<L> = V3::load(token, &self.place);
         let foot = match self.kind {
             Kind::HalfSpace => return (at.dot(place), place),
+            // These are no closed form.
+            Kind::Triangles => at,
             Kind::Capsule => {
                 let along: V3<L> = V3::load(token, &self.along);
                 let squared = along.dot(along).max(L::splat(token, f32::MIN_POSITIVE));

@@ -2,7 +2,7 @@
 //! queried, so that a terrain costs only the area under the cloth.
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::partitioning::Bvh;
+use parry3d::partitioning::{Bvh, TraversalAction};
 use parry3d::shape::{HeightField, Shape};
 
 use crate::contact::collider::{Collider, SAMPLES};
@@ -54,8 +54,20 @@ fn near_parts(shape: &dyn Shape, seen: &Aabb) -> Option<Aabb> {
 }
 
 fn near_leaves(tree: &Bvh, seen: &Aabb) -> Option<Aabb> {
-    let leaves = tree.intersect_aabb(seen).filter_map(|leaf| tree.leaf_node(leaf));
-    leaves.map(|leaf| leaf.aabb()).reduce(|one, other| one.merged(&other))
+    let mut near: Option<Aabb> = None;
+    tree.traverse(|node| {
+        let around = node.aabb();
+        if !around.intersects(seen) {
+            return TraversalAction::Prune;
+        }
+        // All parts within a box that is seen as a whole intersect what is seen.
+        if !node.is_leaf() && !seen.contains(&around) {
+            return TraversalAction::Continue;
+        }
+        near = Some(near.map_or(around, |near| near.merged(&around)));
+        TraversalAction::Prune
+    });
+    near
 }
 
 /// Box of a heightfield near a box: it extends downwards without end, since a heightfield is ground.

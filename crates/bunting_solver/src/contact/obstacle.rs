@@ -66,7 +66,7 @@ impl Cut {
 /// A shape that triangles do not cut.
 pub(super) struct Obstacle<'a> {
     shape: &'a dyn Shape,
-    closed_form: Option<ClosedForm>,
+    closed_form: Option<ClosedForm<'a>>,
     /// The shape as ground, if it is a heightfield.
     ground: Option<&'a HeightField>,
     /// Whether a plane of the surface is taken to have the whole shape below it. This is exact for convex shapes. Ground

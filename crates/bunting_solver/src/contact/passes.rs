@@ -37,8 +37,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                     continue;
                 }
                 self.take_back_pushed(cloth, &mut candidates.pushed);
-                let contact = Contact::new(&state.material, &state.drive, collider, &self.clock);
-                let Candidates { touching, pushed, .. } = candidates;
+                let Candidates { touching, pushed, cells, .. } = candidates;
+                let contact = Contact::new(&state.material, &state.drive, collider, &self.clock)
+                    .among(cells.as_mut());
                 touching.retain(|&particle| {
                     let push = self.solve_contact(cloth, particle, &contact);
                     pushed.extend(

@@ -7,6 +7,7 @@ use crate::contact::collider_packs::{ColliderPacks, LaneTouch, Member};
 use crate::contact::reaction::ReactionSum;
 use crate::contact::substep::{Contact, Push};
 use crate::contact::touch::Touch;
+use crate::contact::triangles::TriangleCells;
 use crate::contact::velocity_packs::ChangeVelocities;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{lane3, set_lane3};
@@ -70,6 +71,18 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
+    /// Takes out a collider's triangles near its cloth, so that the contact can ask for them.
+    fn take_cells(&mut self, member: Member) -> Option<TriangleCells> {
+        self.lanes[member.cloth].as_mut()?.contacts.get_mut(member.collider)?.cells.take()
+    }
+
+    fn put_cells(&mut self, member: Member, cells: Option<TriangleCells>) {
+        let state = self.lanes[member.cloth].as_mut();
+        if let Some(of_collider) = state.and_then(|it| it.contacts.get_mut(member.collider)) {
+            of_collider.cells = cells;
+        }
+    }
+
     fn contact_of(&self, member: Member) -> Option<Contact<'_>> {
         let state = self.lanes[member.cloth].as_ref()?;
         let collider = state.colliders.get(member.collider)?;
@@ -85,13 +98,18 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 if set.near[index].touch(lane) != LaneTouch::Enters {
                     continue;
                 }
-                let Some(contact) = self.contact_of(member) else { continue };
-                let start = lane3(&self.scratch[pack], lane);
-                let before = lane3(&self.positions.packs()[pack], lane);
-                let Some(projection) = contact.project(start, before) else { continue };
-                let after = contact.pose.transform_point(projection.to);
-                set_lane3(&mut self.positions.packs_mut()[pack], lane, after);
-                set_lane3(&mut set.near[index].pushed, lane, after - before);
+                let mut cells = self.take_cells(member);
+                if let Some(contact) = self.contact_of(member) {
+                    let contact = contact.among(cells.as_mut());
+                    let start = lane3(&self.scratch[pack], lane);
+                    let before = lane3(&self.positions.packs()[pack], lane);
+                    if let Some(projection) = contact.project(start, before) {
+                        let after = contact.pose.transform_point(projection.to);
+                        set_lane3(&mut self.positions.packs_mut()[pack], lane, after);
+                        set_lane3(&mut set.near[index].pushed, lane, after - before);
+                    }
+                }
+                self.put_cells(member, cells);
             }
         }
     }

@@ -85,8 +85,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             return;
         }
         let mut outcome = Outcome { moment: 0.0, pressing: state.pressing, reaction };
+        let mut cells = candidates.cells.take();
         let contact = Contact::new(&state.material, &state.drive, collider, &self.clock)
-            .carrying(candidates.carries);
+            .carrying(candidates.carries)
+            .among(cells.as_mut());
         let mut pushes = project(self, &contact, &candidates.particles);
         if !candidates.is_in_lanes {
             candidates.touching.clear();
@@ -103,6 +105,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         state.external_moment += outcome.moment;
         state.pressing = outcome.pressing;
+        candidates.cells = cells;
     }
 
     /// Projects one particle, and returns the push if there is one.

@@ -1,5 +1,7 @@
 //! A collider and a cloth in a substep, and what the collider pushes.
 
+use core::cell::RefCell;
+
 use glam::{Affine3A, Mat3, Vec3};
 use parry3d::math::Pose;
 
@@ -12,6 +14,7 @@ use crate::contact::reach::Reach;
 use crate::contact::surface::{Projection, Surface};
 use crate::contact::sweep::{Corner, solve_triangles};
 use crate::contact::touch::Touch;
+use crate::contact::triangles::TriangleCells;
 use crate::fabric::FabricMaterial;
 use crate::step::Drive;
 use crate::step::clock::Clock;
@@ -52,6 +55,8 @@ pub(super) struct Contact<'a> {
     frame: FrameStep,
     /// Whether the collider rests in the cloth's frame, which rests, too.
     is_still: bool,
+    /// The substep, counted from one.
+    substep: u32,
 }
 
 impl<'a> Contact<'a> {
@@ -77,6 +82,7 @@ impl<'a> Contact<'a> {
                 shape: &*collider.shape.0,
                 closed_form: ClosedForm::of(&*collider.shape.0),
                 ground: collider.shape.as_heightfield(),
+                cells: None,
                 rise: RISE_SPEED * clock.step,
                 carries: false,
                 clearance,
@@ -87,11 +93,12 @@ impl<'a> Contact<'a> {
             pose,
             frame,
             is_still: collider.from == collider.to && !frame.moves,
+            substep: begun,
         }
     }
 
     /// The shape's closed form, if it has one.
-    pub fn closed_form(&self) -> Option<&ClosedForm> {
+    pub fn closed_form(&self) -> Option<&ClosedForm<'a>> {
         self.surface.closed_form.as_ref()
     }
 
@@ -115,6 +122,11 @@ impl<'a> Contact<'a> {
         Affine3A::from_mat3_translation(axes, self.surface_motion(Vec3::ZERO))
     }
 
+    /// The substep, counted from one.
+    pub fn substep(&self) -> u32 {
+        self.substep
+    }
+
     /// Least distance of particles from the shape, m.
     pub fn clearance(&self) -> f32 {
         self.surface.clearance
@@ -128,6 +140,12 @@ impl<'a> Contact<'a> {
     /// The contact of a shape that carries along what it hits, or does not.
     pub fn carrying(mut self, carries: bool) -> Self {
         self.surface.carries = carries;
+        self
+    }
+
+    /// The contact of a shape whose triangles near the cloth are known.
+    pub fn among(mut self, cells: Option<&'a mut TriangleCells>) -> Self {
+        self.surface.cells = cells.map(RefCell::new);
         self
     }
 

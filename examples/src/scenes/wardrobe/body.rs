@@ -1,7 +1,6 @@
 //! The body that wears the clothes: capsules on its bones.
 
 use bevy::prelude::*;
-use bevy_bunting::ScaleInShape;
 use bevy_bunting::prelude::*;
 
 use crate::figure::part::Part;
@@ -59,8 +58,7 @@ pub fn spawn(commands: &mut Commands, joints: &[Entity]) {
         let collider = ClothCollider { margin, friction: FRICTION, ..shape };
         let layers = ClothLayers::new(layer, CLOTHES);
         let held = ChildOf(joints[part.joint.index()]);
-        // Bones have no scale but the rounding of their turns, with which capsules would be hulls of many corners.
-        commands.spawn((part, collider, ScaleInShape, layers, part.pose(), held));
+        commands.spawn((part, collider, layers, part.pose(), held));
     };
     for side in [Side::Left, Side::Right] {
         spawn(shin(side), LEG_MARGIN, BODY);

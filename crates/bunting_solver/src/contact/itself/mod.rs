@@ -13,7 +13,7 @@
 mod boxes;
 mod cell_groups;
 mod cell_pairs;
-mod closest;
+pub(super) mod closest;
 mod cloth;
 mod contact_packs;
 pub(super) mod contacts;
