@@ -5,6 +5,7 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::Pose;
 use parry3d::shape::SharedShape;
 
+use crate::constants::LEAST_CLEARANCE;
 use crate::step::frame::FrameMotion;
 
 /// Fractions of the tick at which the box around a moving collider is computed.
@@ -84,6 +85,11 @@ impl Collider {
             && is_pose(self.to)
             && self.margin.is_finite()
             && self.friction.is_finite()
+    }
+
+    /// Least distance from the shape of the particles of a cloth of a thickness, m.
+    pub(super) fn clearance(&self, thickness: f32) -> f32 {
+        (thickness + self.margin).max(LEAST_CLEARANCE)
     }
 
     /// Box around the shape in all its poses of the tick, without the margin, m.

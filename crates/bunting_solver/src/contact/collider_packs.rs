@@ -4,6 +4,7 @@ use core::ops::Range;
 
 use crate::constants::LEAST_LENGTH;
 use crate::contact::lane_shapes::{Affine, AffinePacks, Kind, ShapePacks};
+use crate::contact::reach::LONGER;
 use crate::contact::substep::Contact;
 use crate::contact::triangles::LaneTriangles;
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
@@ -13,9 +14,6 @@ use crate::simd::vec3::{Pack3, V3};
 /// are pushed along the plane that was nearest before, though they enter it through another one. Smaller: by rounding, particles that are
 /// pressed against a shape count as entering it, and are solved one by one.
 const TOUCHING: f32 = 0.1;
-
-/// How much longer than it is a path is taken to be: more than rounding.
-const LONGER: f32 = 1.001;
 
 /// A collider of a cloth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,7 +6,6 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
-use crate::constants::LEAST_CLEARANCE;
 use crate::contact::bounds::{dragged_by_anchors, moved_by_forces};
 use crate::contact::candidates::Candidates;
 use crate::contact::closed_form::ClosedForm;
@@ -65,19 +64,22 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 state.colliders.iter().zip(&mut state.contacts).enumerate()
             {
                 gather_candidates(&self.fabric, collider, &boxes, candidates);
-                let distance = (state.material.thickness + collider.margin).max(LEAST_CLEARANCE);
                 TriangleCells::begin_tick(
                     &mut candidates.cells,
                     &collider.shape,
-                    [distance, self.fabric.shortest_link()],
+                    [collider.clearance(state.material.thickness), self.fabric.shortest_link()],
                     self.fabric.particle_count(),
                 );
                 let to_end = to_end_of_tick(collider);
-                let (mut farthest, mut in_frame) = (0.0_f32, 0.0_f32);
-                for &particle in candidates.particles.iter().chain(&candidates.corners) {
+                let moving = |particle: u32| {
                     let (at, velocity) = (at[particle as usize], velocities[particle as usize]);
                     let surface = to_end.transform_point3(at);
                     let way = surface - frame.to_new(at) - velocity * tick;
+                    Moving { at, surface, way }
+                };
+                let (mut farthest, mut in_frame) = (0.0_f32, 0.0_f32);
+                for &particle in candidates.particles.iter().chain(&candidates.corners) {
+                    let Moving { at, surface, way } = moving(particle);
                     farthest = farthest.max(way.length_squared());
                     in_frame = in_frame.max(surface.distance_squared(at));
                 }
@@ -90,17 +92,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                     || !candidates.is_empty() && contains_pin(&self.fabric, collider, &at);
                 let member = Member { cloth, collider: index };
                 candidates.is_in_lanes = !candidates.wait_for_end
-                    && add_to_sets(
-                        &mut sets,
-                        &self.layout,
-                        member,
-                        collider,
-                        candidates,
-                        |at_of| {
-                            let (at, velocity) = (at[at_of as usize], velocities[at_of as usize]);
-                            (at, to_end.transform_point3(at) - frame.to_new(at) - velocity * tick)
-                        },
-                    );
+                    && add_to_sets(&mut sets, &self.layout, member, collider, candidates, moving);
             }
         }
         sets.sort_by_key(|set: &ColliderPacks<P>| set.key);
@@ -112,6 +104,16 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 /// Part of the way of a particle in a tick, beyond half of the reach of the cells, within which triangles are known in lanes. Smaller: particles that are
 /// pulled along come to where they are not known, and are solved one by one. Larger: more triangles are asked.
 const WAY: f32 = 1.5;
+
+/// A particle and a collider in a tick.
+struct Moving {
+    /// Position of the particle at the start, m.
+    at: Vec3,
+    /// Where the collider carries a point of it that is there, m.
+    surface: Vec3,
+    /// Way of the collider relative to the particle, m.
+    way: Vec3,
+}
 
 /// From the points of a collider at the start of the tick to the same points at its end, each in the cloth's frame as it is then.
 fn to_end_of_tick(collider: &Collider) -> Affine3A {
@@ -127,15 +129,15 @@ fn contains_pin(fabric: &Fabric, collider: &Collider, positions: &[Vec3]) -> boo
     pins.any(|pin| collider.shape.contains_local_point(pose.inverse_transform_point(pin)))
 }
 
-/// Adds the particles that may touch a collider to the set of its kind, if there are lanes for it. Returns whether there are. `moving` tells the
-/// place of a particle, and the way of the collider in the tick relative to it, m.
+/// Adds the particles that may touch a collider to the set of its kind, if there are lanes for it. Returns whether there are. `moving` tells how
+/// each moves.
 fn add_to_sets<P: Pack, Y: Layout<P>>(
     sets: &mut Vec<ColliderPacks<P>>,
     layout: &Y,
     member: Member,
     collider: &Collider,
     candidates: &mut Candidates,
-    moving: impl Fn(u32) -> (Vec3, Vec3),
+    moving: impl Fn(u32) -> Moving,
 ) -> bool {
     let Candidates { particles, cells, .. } = candidates;
     let form = ClosedForm::of(&*collider.shape.0).and_then(|form| Kind::of(&form));
@@ -155,7 +157,7 @@ fn add_to_sets<P: Pack, Y: Layout<P>>(
         let (pack, lane) = layout.locate(particle as usize, member.cloth);
         let near = set.add((pack, lane));
         let (Some(triangles), Some(cells)) = (&mut set.triangles, cells.as_mut()) else { continue };
-        let (at, way) = moving(particle);
+        let Moving { at, way, .. } = moving(particle);
         let at = pose.inverse_transform_point(at);
         let reach = cells.reach();
         let radius = reach.min(0.5 * reach + WAY * way.length());

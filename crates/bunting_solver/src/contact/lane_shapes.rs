@@ -19,7 +19,7 @@ pub(crate) enum Kind {
     Cuboid,
     /// Sharp or rounded.
     Cylinder,
-    /// Those near each particle.
+    /// Surfaces of triangles, of which each particle knows those near it.
     Triangles,
 }
 

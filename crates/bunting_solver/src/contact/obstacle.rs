@@ -7,7 +7,7 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::query::{PointQuery, PointQueryWithLocation};
 use parry3d::shape::{HeightField, Shape, TriMeshFlags, Triangle};
 
-use crate::constants::{LEAST_CLEARANCE, LEAST_LENGTH};
+use crate::constants::LEAST_LENGTH;
 use crate::contact::closed_form::ClosedForm;
 use crate::contact::collider::Collider;
 use crate::contact::ground;
@@ -95,7 +95,7 @@ impl<'a> Obstacle<'a> {
         } else {
             LEAST_CCD_THRESHOLD
         };
-        let kept = KEPT * (thickness + collider.margin).max(LEAST_CLEARANCE);
+        let kept = KEPT * collider.clearance(thickness);
         Self {
             shape,
             closed_form: ClosedForm::of(shape),

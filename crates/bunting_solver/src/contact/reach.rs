@@ -7,7 +7,7 @@ use crate::contact::collider::Collider;
 use crate::step::frame::FrameStep;
 
 /// How much longer than it is a path is taken to be: more than rounding.
-const LONGER: f32 = 1.001;
+pub(super) const LONGER: f32 = 1.001;
 
 /// Distance by which a path must miss what it might touch, m: more than the rounding of coordinates of tens of metres.
 const SLACK: f32 = 1e-4;

@@ -5,7 +5,6 @@ use core::cell::RefCell;
 use glam::{Affine3A, Mat3, Vec3};
 use parry3d::math::Pose;
 
-use crate::constants::LEAST_CLEARANCE;
 use crate::contact::closed_form::ClosedForm;
 use crate::contact::collider::Collider;
 use crate::contact::ground::RISE_SPEED;
@@ -73,7 +72,7 @@ impl<'a> Contact<'a> {
             |substeps: u32| collider.pose_at(substeps as f32 / settings.substeps as f32);
         let (old_pose, pose) = (pose_after(index), pose_after(begun));
         let frame = drive.motion.substep(index, settings.substeps);
-        let clearance = (material.thickness + collider.margin).max(LEAST_CLEARANCE);
+        let clearance = collider.clearance(material.thickness);
         Self {
             collider,
             thickness: material.thickness,

@@ -10,6 +10,7 @@ use crate::constants::LEAST_LENGTH;
 use crate::contact::closed_form::ClosedForm;
 use crate::contact::ground;
 use crate::contact::nearest::nearest_point;
+use crate::contact::reach::LONGER;
 use crate::contact::triangles::{Near, TriangleCells};
 
 /// Part of the clearance by which a particle may be farther from a shape that carries it along than it must be and touches it. Larger:
@@ -37,9 +38,6 @@ pub(super) struct Surface<'a> {
     /// Coulomb friction coefficient of the contact.
     pub friction: f32,
 }
-
-/// How much longer than it is a path is taken to be: more than rounding.
-const LONGER: f32 = 1.001;
 
 /// What of the surface is nearest to a point.
 struct Nearest {
